@@ -63,8 +63,16 @@ DAMPED_INPUTS = (
     Plug("Pitch Period", "NodeSocketFloat", 0.0, "Natural period in seconds; 0 is that of its size"),
     Plug("Roll Period", "NodeSocketFloat", 0.0, "Natural period in seconds; 0 is that of its size"),
     Plug(
+        "Surge Period", "NodeSocketFloat", 0.0,
+        "Natural period in seconds with which it swings back and forth, as on a mooring; 0: none",
+    ),
+    Plug(
+        "Sway Period", "NodeSocketFloat", 0.0,
+        "Natural period in seconds with which it swings from side to side about its place; 0: none",
+    ),
+    Plug(
         "Damping", "NodeSocketFloat", USUAL_DAMPING,
-        "Of heave and pitch: 1 does not swing at all, 0.3 is usual for ships",
+        "Of all but roll: 1 does not swing at all, 0.3 is usual for ships",
     ),
     Plug(
         "Roll Damping", "NodeSocketFloat", USUAL_ROLL_DAMPING,
@@ -78,11 +86,16 @@ SOLVED_INPUTS = (
         "Height of a damped hull, or of one over a bed, and its slopes along x and y, in the ocean's space",
         hidden=True,
     ),
+    Plug(
+        "Solved Way", "NodeSocketVector", None, "How far it is off its place, in the ocean's space",
+        hidden=True,
+    ),
     Plug("Solved Frame", "NodeSocketFloat", -1e6, "The scene's frame at which it is so", hidden=True),
 )  # fmt: skip
 _OF_RIDE = (
     Plug("Is Solved", "NodeSocketBool", False, "Height and slopes are those given"),
     Plug("Solved", "NodeSocketVector", None, "Height, and slopes along x and y, in the ocean's space"),
+    Plug("Solved Way", "NodeSocketVector", None, "How far it is off its place, in the ocean's space"),
 )
 AS_ONE = Plug(
     "As One", "NodeSocketBool", False,
@@ -101,6 +114,8 @@ _RANGES = {
     "Heave Period": ("TIME_ABSOLUTE", 0.0, 1e3),
     "Pitch Period": ("TIME_ABSOLUTE", 0.0, 1e3),
     "Roll Period": ("TIME_ABSOLUTE", 0.0, 1e3),
+    "Surge Period": ("TIME_ABSOLUTE", 0.0, 1e3),
+    "Sway Period": ("TIME_ABSOLUTE", 0.0, 1e3),
     "Damping": ("FACTOR", LEAST_DAMPING, 1.0),
     "Roll Damping": ("FACTOR", LEAST_DAMPING, 1.0),
 }
@@ -175,7 +190,8 @@ def _build_ride(tree: bpy.types.NodeTree) -> None:
     )  # fmt: skip
     felt = discs.mean(point)
     felt_x, felt_y, _ = coordinates(build, felt)
-    where = build.switch("VECTOR", is_solved, felt, combined(build, felt_x, felt_y, solved))
+    there = build.vector("ADD", combined(build, felt_x, felt_y, solved), build.given("Solved Way"))
+    where = build.switch("VECTOR", is_solved, felt, there)
     origin = build.math("SUBTRACT", build.given("Keel"), build.given("Draft"))
     settled = build.math("MULTIPLY", origin, size)
     height = combined(build, 0.0, 0.0, build.switch("FLOAT", build.given("Keep Height"), settled, above))
@@ -338,7 +354,8 @@ def _build_carrier(tree: bpy.types.NodeTree) -> None:
         build, "ABSOLUTE", build.math("SUBTRACT", frame, build.given("Solved Frame")), "ShaderNodeMath"
     )
     is_solved = build.compare("LESS_THAN", away, _SAME_FRAME, "FLOAT")
-    ride = _ride(build, _origin(build), {"Is Solved": is_solved, "Solved": build.given("Solved")})
+    solved = {name: build.given(name) for name in ("Solved", "Solved Way")}
+    ride = _ride(build, _origin(build), {"Is Solved": is_solved, **solved})
     position, rotation = _of_place(build, ride, 0)
     moved = _moved(build, ride, build.given("Geometry"))
     there = _transform(build, translation=position, rotation=rotation)
@@ -346,6 +363,6 @@ def _build_carrier(tree: bpy.types.NodeTree) -> None:
 
 
 STENCIL = GroupKind("Ocean Tweak Stencil", 1, _build_stencil)
-RIDE = GroupKind("Ocean Tweak Ride", 5, _build_ride)
-FLOAT = GroupKind("Float on Ocean", 5, _build_float)
-CARRIER = GroupKind("Float on Ocean Carrier", 6, _build_carrier)
+RIDE = GroupKind("Ocean Tweak Ride", 6, _build_ride)
+FLOAT = GroupKind("Float on Ocean", 6, _build_float)
+CARRIER = GroupKind("Float on Ocean Carrier", 7, _build_carrier)

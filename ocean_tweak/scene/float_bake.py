@@ -10,8 +10,7 @@ from dataclasses import dataclass, field
 import bpy
 from mathutils import Matrix
 
-from ..core.sea.felt_water import felt
-from ..core.sea.waterline import Plane
+from ..core.sea.felt_water import Felt, felt
 from . import contact, float_carrier, float_keys, float_riding, floating, handlers
 from .animated import shown_settings
 from .floating import FloatError, Ride
@@ -42,7 +41,7 @@ class _Rider:
     hull: Hull | None
     level: float
     track: float_keys.Track
-    felt: list[Plane] = field(default_factory=list)
+    felt: list[Felt] = field(default_factory=list)
 
 
 class FloatBake:

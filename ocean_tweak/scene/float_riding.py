@@ -24,10 +24,9 @@ from numpy.typing import NDArray
 
 from ..core import OceanParameters, ParameterError
 from ..core.numerics.memo import MEMO
-from ..core.sea.felt_water import FeltWater, Footprint, felt_sea
+from ..core.sea.felt_water import Felt, FeltWater, Footprint, felt_sea
 from ..core.sea.placed_waves import without_placed
 from ..core.sea.riding import LEAST_DAMPING, Moments, Oscillator, moments, natural_periods, ride
-from ..core.sea.waterline import Plane
 from ..nodes.floating import CARRIER
 from ..nodes.modifier_inputs import all_inputs, get_input
 from ..nodes.versioned import is_of_kind
@@ -60,11 +59,13 @@ _known: dict[int, object] = {}
 
 
 class Solved(NamedTuple):
-    """Where a hull is: height in m and slopes along x and y, in the ocean's space."""
+    """Where a hull is: height in m, slopes along x and y, and m off its place, in the ocean's space."""
 
     height: float
     slope_x: float
     slope_y: float
+    off_x: float = 0.0
+    off_y: float = 0.0
 
 
 def can_ride(ride: Ride) -> bool:
@@ -106,6 +107,7 @@ def footprint(place: Matrix, ocean: Matrix, ride: Ride, metres: float) -> Footpr
         round(ride.waterline * size, _DIGITS[1]),
         round(beam * size, _DIGITS[1]),
         ride.drift,
+        ride.damped and max(ride.surge_period, ride.sway_period) > 0.0,
     )
 
 
@@ -118,8 +120,9 @@ def gone_along(place: Footprint, way: tuple[float, float]) -> Footprint:
     return place._replace(x=x, y=y)
 
 
-def modes_of(ride: Ride, place: Footprint, gravity: float) -> tuple[Oscillator, Oscillator, Oscillator]:
-    """Heave, pitch and roll, with the periods that are set, or else those of the size.
+def modes_of(ride: Ride, place: Footprint, gravity: float) -> tuple[Oscillator | None, ...]:
+    """Heave, pitch and roll, with the periods that are set, or else those of the size; and surge and sway,
+    which there are where they have a period.
 
     A damping that a script set beyond its range is the end of that range.
     """
@@ -134,14 +137,21 @@ def modes_of(ride: Ride, place: Footprint, gravity: float) -> tuple[Oscillator, 
     damping, roll_damping = (
         min(max(share, LEAST_DAMPING), 1.0) for share in (ride.damping, ride.roll_damping)
     )
-    return Oscillator(heave, damping), Oscillator(pitch, damping), Oscillator(roll, roll_damping)
+    aside = (
+        Oscillator(period, damping) if period > 0.0 else None
+        for period in (ride.surge_period, ride.sway_period)
+    )
+    return Oscillator(heave, damping), Oscillator(pitch, damping), Oscillator(roll, roll_damping), *aside
 
 
 def in_ocean(along: Sequence[float], place: Footprint) -> Solved:
-    """Height and slopes, of which these are along a hull and across it, in the ocean's axes."""
-    height, slope, heel = along
+    """Height, slopes and way, of which these are along a hull and across it, in the ocean's axes."""
+    height, slope, heel, surge, sway = along
     cosine, sine = math.cos(place.heading), math.sin(place.heading)
-    return Solved(height, slope * cosine - heel * sine, slope * sine + heel * cosine)
+    return Solved(
+        height, slope * cosine - heel * sine, slope * sine + heel * cosine, surge * cosine - sway * sine,
+        surge * sine + sway * cosine,
+    )  # fmt: skip
 
 
 def solve(
@@ -169,30 +179,36 @@ def solve(
         water = cache(lambda time: felt.at(time, lies(time)))  # modes have moments in common
         along = []
         for number, mode in enumerate(modes_of(ride_of_hull, now, plan.parameters.water.gravity)):
+            if mode is None:
+                along.append(0.0)
+                continue
             known = moments(plan.time, mode)
             forcing = np.array([water(time)[number] for time in known.times])
             along.append(ride(forcing, known, plan.time, mode))
         found = in_ocean(along, now)
     else:
         half = max(now.half_length, _POINT)
-        found = in_ocean(felt.at(plan.time, now._replace(half_length=half, half_beam=half)), now)
+        on_surface = now._replace(half_length=half, half_beam=half, sways=False)
+        found = in_ocean(felt.at(plan.time, on_surface), now)
     MEMO.put(_FELT, sea, felt)  # it has grown
     return found
 
 
 def solve_by_frames(
-    felt: list[Plane], seconds: Fraction, ride_of_hull: Ride, place: Footprint, gravity: float
+    felt: list[Felt], seconds: Fraction, ride_of_hull: Ride, place: Footprint, gravity: float
 ) -> Solved:
     """Where a hull is after it felt these waters, one a frame; before the first it lay on it at rest.
 
     seconds : between them
     """
     modes = modes_of(ride_of_hull, place, gravity)
-    count = max(len(felt), math.ceil(max(mode.memory for mode in modes) / float(seconds)))
+    count = max(len(felt), math.ceil(max(mode.memory for mode in modes if mode) / float(seconds)))
     known = Moments(seconds, range(-count, 2))
     # the next one is not known, and not needed
     water = np.array([felt[0]] * (count + 1 - len(felt)) + felt + [felt[-1]])
-    along = [ride(water[:, number], known, Fraction(0), mode) for number, mode in enumerate(modes)]
+    along = [
+        ride(water[:, number], known, Fraction(0), mode) if mode else 0.0 for number, mode in enumerate(modes)
+    ]
     return in_ocean(along, place)
 
 
@@ -328,18 +344,22 @@ def _give(
     reasons, uid = _reasons(carrier, ocean, ride, scene, depsgraph), carrier.session_uid
     if reasons is None:
         _known.pop(uid, None)
-        _set(carrier, (0.0, 0.0, 0.0), _NEVER)
+        _set(carrier, Solved(0.0, 0.0, 0.0), 1.0, _NEVER)
         return
     if _known.get(uid) == reasons:
         return
     plan = reasons.plan
     found = solve(plan, ride, ocean.matrix_world, scene, place_of(carrier, depsgraph))
     _known[uid] = reasons
-    _set(carrier, (found.height * plan.scale, found.slope_x, found.slope_y), float(plan.frame))
+    _set(carrier, found, plan.scale, float(plan.frame))
 
 
-def _set(carrier: bpy.types.Object, solved: tuple[float, float, float], frame: float) -> None:
-    modifier = float_carrier.modifier_of(carrier)
-    now = get_input(modifier, "Solved"), get_input(modifier, "Solved Frame")
-    if np.float32(frame) != np.float32(now[1]) or not np.array_equal(np.float32(now[0]), np.float32(solved)):
-        float_carrier.set_inputs(carrier, {"Solved": solved, "Solved Frame": frame})
+def _set(carrier: bpy.types.Object, solved: Solved, scale: float, frame: float) -> None:
+    modifier, (height, slope_x, slope_y, x, y) = float_carrier.modifier_of(carrier), solved
+    wanted = {
+        "Solved": (scale * height, slope_x, slope_y), "Solved Way": (scale * x, scale * y, 0.0),
+        "Solved Frame": frame,
+    }  # fmt: skip
+    known = {name: np.float32(get_input(modifier, name)) for name in wanted}
+    if not all(np.array_equal(known[name], np.float32(value)) for name, value in wanted.items()):
+        float_carrier.set_inputs(carrier, wanted)

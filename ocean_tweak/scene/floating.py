@@ -60,7 +60,9 @@ class Ride:
     beam : of a damped one, across its length, Blender units; 0 is as wide as long
     along_y : whether its length is along its y axis
     heave_period, pitch_period, roll_period : natural ones, s; 0 are those of its size
-    damping, roll_damping : of heave and pitch, and of roll, as shares of the critical one
+    surge_period, sway_period : natural ones with which it swings along its length and across it about its
+        place, as on a mooring, s; 0 does not swing
+    damping, roll_damping : of all but roll, and of roll, as shares of the critical one
     """
 
     waterline: float = 0.0
@@ -75,6 +77,8 @@ class Ride:
     heave_period: float = 0.0
     pitch_period: float = 0.0
     roll_period: float = 0.0
+    surge_period: float = 0.0
+    sway_period: float = 0.0
     damping: float = USUAL_DAMPING
     roll_damping: float = USUAL_ROLL_DAMPING
 

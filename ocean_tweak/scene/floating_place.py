@@ -94,6 +94,7 @@ def place_on(
     height, normal, drift = _settled(water, middle, ride, 0.5 * ride.waterline * size * metres)
     if solved is not None:
         height, normal = solved.height, _normal(solved.slope_x, solved.slope_y)
+        drift = drift + np.array([solved.off_x, solved.off_y])
     level = Vector((*(middle + drift), height)) / metres
     level.z += to_ocean.translation.z if ride.keep_height else -ride.level * size
     up = _world_normal(ocean, Vector((0.0, 0.0, 1.0)))

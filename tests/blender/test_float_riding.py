@@ -71,7 +71,7 @@ def queries(extension, monkeypatch):
     return asked
 
 
-def expected(extension, core, ocean, parameters, frame, heading):
+def expected(extension, core, ocean, parameters, frame, heading, aside_periods=()):
     """Location and up of the boat: by a loop over moments, with all waves of the sea."""
     riding, waterline = extension("core.sea.riding"), extension("core.sea.waterline")
     sea, now = core.Ocean(parameters), Fraction(frame - 1, 24)
@@ -93,6 +93,14 @@ def expected(extension, core, ocean, parameters, frame, heading):
         found.append(riding.ride(np.array(water), known, now, mode))
     height, along, across = found
     slope = along * ahead + across * aside
+    for period, way in zip(aside_periods, (ahead, aside), strict=False):
+        mode = riding.Oscillator(period, 0.4)
+        known = riding.moments(now, mode)
+        gone = [
+            sea.surface(time, {"displacement"}, on=core.Places(x, y)).displacement[:, :2].mean(axis=0) @ way
+            for time in known.times
+        ]
+        middle = middle + riding.ride(np.array(gone), known, now, mode) * way
     return matrix @ [*middle, height, 1.0], matrix[:3, :3] @ [-slope[0], -slope[1], 1.0]
 
 
@@ -108,6 +116,29 @@ def test_it_rides_as_the_core_has_it(extension, afloat, ocean, core, make_parame
         assert math.degrees(Vector(place[:3, 2]).angle(Vector(up))) < 0.5
         tilts.append(math.degrees(Vector(up).angle((0.0, 0.0, 1.0))))
     assert max(tilts) > 2.0
+
+
+def test_with_a_period_it_surges_and_sways_about_its_place(
+    extension, afloat, ocean, core, make_parameters, empty_scene, set_ride, select
+):
+    """As the same oscillators, forced by how far the water under it has gone; baked too."""
+    set_ride(afloat, surge_period=3.0, sway_period=5.0)
+    ways, live = [], []
+    for frame in (1, 13, 30):
+        empty_scene.frame_set(frame)
+        turn = TURN + math.pi / 2
+        point, _ = expected(extension, core, ocean, make_parameters(), frame, turn, (3.0, 5.0))
+        still, _ = expected(extension, core, ocean, make_parameters(), frame, turn)
+        place = np.array(afloat.matrix_world)
+        np.testing.assert_allclose(place[:2, 3], point[:2], atol=0.01)
+        assert place[2, 3] == pytest.approx(still[2] - BEAM / 3.0 + HEIGHT / 2.0, abs=0.02)
+        ways.append(math.dist(point[:2], still[:2]))
+        live.append(place)
+    assert max(ways) > 0.1
+    select(afloat)
+    assert bpy.ops.object.ocean_tweak_float_bake(frame_start=30, frame_end=30) == {"FINISHED"}
+    empty_scene.frame_set(30)
+    np.testing.assert_allclose(np.array(afloat.matrix_world), live[-1], atol=0.02)
 
 
 def test_any_frame_alone_is_the_same(extension, afloat, empty_scene):

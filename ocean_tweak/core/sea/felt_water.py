@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a hull feels of a sea: at each moment, the plane through the water over its waterline."""
+"""What a hull feels of a sea: at each moment the plane through the water over its waterline, and how far that
+water has gone from where it rests."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ from ..parameters.ocean_parameters import OceanParameters
 from .ocean import Ocean
 from .placed_waves import repeating
 from .regions import Places
-from .waterline import Plane, fitted_plane, stencil
+from .waterline import fitted_plane, stencil
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
@@ -31,6 +32,7 @@ class Footprint(NamedTuple):
 
     heading : of its bow or stern, from the x axis
     drift : how much it goes along with the water
+    sways : whether it feels how far the water has gone
     """
 
     x: float
@@ -39,12 +41,23 @@ class Footprint(NamedTuple):
     half_length: float
     half_beam: float
     drift: float
+    sways: bool = False
+
+
+class Felt(NamedTuple):
+    """The plane through the water under a hull, and how far this has gone: m, slopes dimensionless."""
+
+    height: float
+    slope_along: float
+    slope_across: float
+    gone_along: float = 0.0
+    gone_across: float = 0.0
 
 
 def felt(
     place: Footprint, carried: Callable[[Array, Array], RealArray], height: Callable[[Array, Array], Array]
-) -> Plane:
-    """Height, and slopes along the hull and across it, of water in m.
+) -> Felt:
+    """What a hull feels of water in m.
 
     carried : (points, 2) how far the water of places at rest has gone
     height : (points,) of the surface above places
@@ -54,10 +67,15 @@ def felt(
     cosine, sine = math.cos(place.heading), math.sin(place.heading)
     x = place.x + along * cosine - across * sine
     y = place.y + along * sine + across * cosine
-    if place.drift:
-        drift_x, drift_y = place.drift * carried(x, y).mean(axis=0)
-        x, y = x + drift_x, y + drift_y
-    return fitted_plane(height(x, y), half)
+    gone_x = gone_y = 0.0
+    if place.drift or place.sways:
+        gone_x, gone_y = carried(x, y).mean(axis=0).tolist()
+        x, y = x + place.drift * gone_x, y + place.drift * gone_y
+    level, slope_along, slope_across = (float(part) for part in fitted_plane(height(x, y), half))
+    if not place.sways:
+        return Felt(level, slope_along, slope_across)
+    along_hull, across_hull = gone_x * cosine + gone_y * sine, gone_y * cosine - gone_x * sine
+    return Felt(level, slope_along, slope_across, along_hull, across_hull)
 
 
 class FeltWater:
@@ -65,15 +83,15 @@ class FeltWater:
 
     def __init__(self, parameters: OceanParameters) -> None:
         self._ocean = Ocean(parameters)
-        self._waters: dict[tuple[Fraction, Footprint], Plane] = {}
+        self._waters: dict[tuple[Fraction, Footprint], Felt] = {}
 
     @property
     def nbytes(self) -> int:
         """Bytes of what is kept."""
         return _BYTES * len(self._waters)
 
-    def at(self, time: Fraction, place: Footprint) -> Plane:
-        """Height, and slopes along the hull and across it, at a time in s."""
+    def at(self, time: Fraction, place: Footprint) -> Felt:
+        """What a hull feels at a time in s."""
         known = self._waters.get((time, place))
         if known is None:
             while len(self._waters) >= _MOST:
@@ -81,7 +99,7 @@ class FeltWater:
             known = self._waters[time, place] = self._new(time, place)
         return known
 
-    def _new(self, time: Fraction, place: Footprint) -> Plane:
+    def _new(self, time: Fraction, place: Footprint) -> Felt:
         return felt(
             place,
             lambda x, y: self._ocean.surface(time, on=Places(x, y)).displacement[:, :2],
