@@ -45,7 +45,7 @@ _REMEDY = (
 def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, _INPUTS)
     geometry = build.given("Geometry")
-    live = held_still(build, geometry, "The coast", _REMEDY)
+    live = held_still(build, geometry, "The coast stands still as it was in frame", _REMEDY)
     is_baked = is_given(build, build.given(FILES))
     build.finish(build.switch("GEOMETRY", is_baked, live, _moved(build, geometry)))
 

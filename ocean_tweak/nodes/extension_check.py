@@ -18,6 +18,7 @@ from .versioned import GroupKind, kind_name
 _BEACON = ".Ocean Tweak Runs"
 _NODE = "Beacon"
 _LINE = "Ocean Tweak: live oceans stand still, as the extension does not run here; enable it, or bake them"
+_STATE = "The sea stands still as it was in frame"
 _REMEDY = (
     "because it is live and the Ocean Tweak extension does not run here: enable the extension, or bake the "
     "ocean"
@@ -33,22 +34,20 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(
         tree, INPUTS, (Plug("Is Absent", "NodeSocketBool", None, "Nothing will move a live sea"),)
     )
-    build.finish_with({"Is Absent": is_absent(build, "The sea", _REMEDY)})
+    build.finish_with({"Is Absent": is_absent(build, _STATE, _REMEDY)})
 
 
-def is_absent(build: Builder, subject: str, remedy: str) -> Socket:
+def is_absent(build: Builder, state: str, remedy: str) -> Socket:
     """Whether a group with INPUTS is live and nothing will move it; the modifier and the console then say so.
 
-    subject : what stands still, first word of the message
+    state : what the message begins with, before the frame
     remedy : end of the message
     """
     information = build.add("GeometryNodeImageInfo", {"Image": _beacon()})
     information.name = _NODE
     dark = build.compare("EQUAL", output(information, "Width"), 0)
     absent = build.logic("AND", build.given("Live"), dark)
-    message = joined_text(
-        build, f"{subject} stands still as it was in frame", build.given("Held Frame"), remedy
-    )
+    message = joined_text(build, state, build.given("Held Frame"), remedy)
     warning = build.add("GeometryNodeWarning", {"Show": absent, "Message": message}, warning_type="WARNING")
     line = output(build.add("GeometryNodeImportCSV", {"Path": _LINE}), "Point Cloud")
     told = build.add("GeometryNodeSwitch", {"Switch": absent, "True": line}, input_type="GEOMETRY")

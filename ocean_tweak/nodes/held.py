@@ -18,21 +18,46 @@ _REMEDY = (
 )
 
 
-def held_still(build: Builder, geometry: Socket, subject: str, remedy: str) -> Socket:
+def held_still(build: Builder, geometry: Socket, state: str, remedy: str) -> Socket:
     """A mesh as the extension wrote it, in a group with INPUTS: without velocity where nothing will move it,
     as what stands still must not be blurred.
 
-    subject, remedy : as `is_absent` has them
+    state, remedy : as `is_absent` has them
     """
     held = build.change("GeometryNodeRemoveAttribute", geometry, {"Name": VELOCITY})
-    return build.switch("GEOMETRY", is_absent(build, subject, remedy), geometry, held)
+    return build.switch("GEOMETRY", is_absent(build, state, remedy), geometry, held)
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, INPUTS)
-    subject = "The area of waves that do not repeat"
-    build.finish(held_still(build, build.given("Geometry"), subject, _REMEDY))
+    state = "The area of waves that do not repeat stands still as it was in frame"
+    build.finish(held_still(build, build.given("Geometry"), state, _REMEDY))
+
+
+def _note(name: str, state: str, remedy: str) -> GroupKind:
+    """A group that changes nothing and says so where the extension is missing."""
+
+    def build(tree: bpy.types.NodeTree) -> None:
+        build = Builder(tree, INPUTS)
+        geometry = build.given("Geometry")
+        build.finish(build.switch("GEOMETRY", is_absent(build, state, remedy), geometry, geometry))
+
+    return GroupKind(name, 1, build)
 
 
 #: waves around a camera that do not repeat
 AREA = GroupKind("Ocean Tweak Area", 1, _build)
+#: an ocean whose bake has no spray
+DRY = _note(
+    "Ocean Tweak Dry",
+    "There is no spray as in frame",
+    "because the Ocean Tweak extension does not run here and the bake has none: enable the extension, or "
+    "bake the ocean again",
+)
+#: the carrier of what drifts with a current
+DRIFTLESS = _note(
+    "Ocean Tweak Driftless",
+    "What floats here has drifted as far as in frame",
+    "because the Ocean Tweak extension, which carries it along with the current, does not run here: enable "
+    "the extension, or bake the floating to keys",
+)

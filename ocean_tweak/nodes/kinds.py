@@ -72,6 +72,8 @@ ALL_KINDS = (
     coast.COAST,
     wet_bed.WET_BED,
     held.AREA,
+    held.DRY,
+    held.DRIFTLESS,
     spray.SPRAY,
     spray_look.SPRAY_LOOK,
     water_pattern.RIPPLES,

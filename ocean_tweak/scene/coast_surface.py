@@ -169,6 +169,7 @@ def _refresh_for_readers(ocean: bpy.types.Object, plan: Plan, is_still: bool) ->
         return True
     if not is_still:
         bed_points.refresh(ocean, sea_over_bed(plan), plan)
+        held_sea.tell(bed_points.points_of(ocean), COAST, math.floor(plan.frame))
     return not is_still
 
 

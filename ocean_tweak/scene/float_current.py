@@ -15,7 +15,7 @@ from ..nodes.versioned import is_of_kind
 from . import float_carrier
 from .animated import clock_of, is_animated, shown_settings
 from .floating import Ride, ride_of
-from .settings import is_ocean, oceans_in
+from .settings import is_ocean, oceans_in, settings_of
 from .units import metres_per_unit
 
 
@@ -42,6 +42,13 @@ def follow_by_hand(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None
     """Whatever was set."""
     for carrier, ocean, ride in _drifting():
         _give(carrier, ocean, ride, scene, depsgraph)
+
+
+def carriers_in_current(ocean: bpy.types.Object) -> list[bpy.types.Object]:
+    """The carriers of what drifts with an ocean's current."""
+    if not settings_of(ocean).use_current:
+        return []
+    return [carrier for carrier, its_ocean, ride in _drifting() if its_ocean == ocean and ride.drift]
 
 
 def _drifting() -> Iterator[tuple[bpy.types.Object, bpy.types.Object, Ride]]:

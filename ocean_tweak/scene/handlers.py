@@ -19,6 +19,7 @@ from ..nodes.extension_check import show_that_it_ends, show_that_it_runs
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.upgrades import upgrade_groups
 from . import (
+    absence_notes,
     bake_state,
     bed_points,
     cache_place,
@@ -274,6 +275,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     _subscribe()
     former_settings.take_over()
     stored_values.mend_all()
+    absence_notes.take_back()
     show_that_it_runs()
     # what a bake's groups of another version were not told
     baked = Wanted.NOTES | Wanted.SURFACE | AROUND_CAMERA if upgrade_groups(ALL_KINDS) else Wanted.NOTES
@@ -326,6 +328,7 @@ def hold_before_save(_path: object = None, _unused: object = None) -> None:
     """Let live oceans stand still as they are, rather than lie flat, where the extension is missing; there
     hulls are cut out as in a render."""
     hull_cut.show_in_window(False)
+    absence_notes.write()
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.HELD)
 
@@ -334,6 +337,7 @@ def hold_before_save(_path: object = None, _unused: object = None) -> None:
 def let_go_after_save(_path: object = None, _unused: object = None) -> None:
     """The file is written: show the whole surface again."""
     hull_cut.show_in_window(True)
+    absence_notes.take_back()
     held_sea.take_back()
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import bpy
 
 from ..nodes.modifier_inputs import reads
-from . import coast_surface, float_carrier, patch_objects, spray
+from . import coast_surface, float_carrier, float_current, patch_objects, spray
 from .cache_place import shown_bake
 from .plan import camera_surface_of
 from .settings import all_oceans, is_ocean, oceans_in, settings_of, was_ocean
@@ -164,7 +164,7 @@ def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
         shown = () if surface is None or around else (Need(surface.name, f"reads {what}", bake),)
         floating = f"{bake}, or bake the floating to keys"
         return (*around, _live(ocean), *shown, *_readers(ocean, what, bake, floating))
-    dry = (*_over_bed(ocean, surface), *_dry(ocean))
+    dry = (*_over_bed(ocean, surface), *_dry(ocean), *_drifting(ocean))
     if surface is not None and patch_objects.shows_area(ocean):
         reason = f"shows waves of {ocean.name} that do not repeat, which a bake of its tile does not have"
         return (Need(surface.name, reason, "mute their layers"), *dry)
@@ -196,6 +196,13 @@ def _coast_around_camera(ocean: bpy.types.Object, surface: bpy.types.Object | No
 def _dry(ocean: bpy.types.Object) -> Iterator[Need]:
     if spray.is_live(ocean):
         yield Need(ocean.name, "has spray, which its bake has not", "bake it again")
+
+
+def _drifting(ocean: bpy.types.Object) -> Iterator[Need]:
+    for carrier in float_current.carriers_in_current(ocean):
+        for item in float_carrier.carried_by(carrier):
+            reason = f"drifts with the current of {ocean.name}, which no bake carries it along with"
+            yield Need(item.name, reason, "bake the floating to keys")
 
 
 def _live(ocean: bpy.types.Object) -> Need:

@@ -147,7 +147,7 @@ def test_the_farm_renders_it_and_misses_what_is_lost(ocean, coast, saved, extens
     assert "Ocean_coast.0002.ply is missing" in said.stderr
 
 
-def test_what_reads_a_baked_coast_still_sees_it_and_is_named(ocean, coast, saved, extension):
+def test_what_reads_a_baked_coast_still_sees_it_and_is_named(ocean, coast, saved, extension, tmp_path):
     buoy = bpy.data.objects.new("Buoy", None)
     buoy.location = (130.0, 70.0, 0.0)
     floating, portability = extension("scene.floating"), extension("scene.portability")
@@ -171,6 +171,9 @@ def test_what_reads_a_baked_coast_still_sees_it_and_is_named(ocean, coast, saved
     assert need.text == (
         "Buoy floats on the coast of Ocean, of which a bake moves the mesh only: bake the floating to keys"
     )
+    bpy.ops.wm.save_mainfile()
+    _, said = look(bpy.data.filepath, [coast.name], [1], tmp_path)
+    assert "Ocean Tweak: live oceans stand still" in said
 
 
 def test_it_moves_between_frames_by_its_velocity(ocean, coast, saved):

@@ -41,6 +41,8 @@ KINDS = {
     "coast": ("nodes.coast", lambda module: module.COAST),
     "wet-bed": ("nodes.wet_bed", lambda module: module.WET_BED),
     "area": ("nodes.held", lambda module: module.AREA),
+    "dry": ("nodes.held", lambda module: module.DRY),
+    "driftless": ("nodes.held", lambda module: module.DRIFTLESS),
     "grid-facts": ("nodes.rest_grid", lambda module: module.GRID_FACTS),
     "cell": ("nodes.rest_grid", lambda module: module.CELL),
     "over-bed": ("nodes.over_bed", lambda module: module.OVER_BED),

@@ -284,11 +284,58 @@ def test_a_wake_over_a_bake_stands_and_says_so(core, extension, horizon, saved, 
     seen, said = look(blend, [surface.name], [1, 3], tmp_path)
     assert "Ocean Tweak: live oceans stand still" in said
     assert np.abs(seen[f"{surface.name} render 3"] - seen[f"{surface.name} render 1"]).max() > 0.05
+    said = render_as_a_farm(extension, blend, tmp_path)
+    assert said.returncode == 3, said.stdout + said.stderr
+    assert f"moves {area.name} of " in said.stderr
+
+
+def render_as_a_farm(extension, blend, tmp_path):
+    """Frame 1 of a file by the script of a farm, without the extension."""
     folder = tmp_path / "Ocean-12345678" / "v001-01234567"
     folder.mkdir(parents=True)
     (folder / "bake.json").write_text('{"shot": {"domain_size": 150.0, "timing": {}}}')
     arguments = ["--cache", str(tmp_path), "--bake", "Ocean-12345678/01234567", "--frames", "1"]
     script = extension("export.farm.render_baked").__file__
-    said = run_script(script, "--pictures", str(tmp_path / "out"), *arguments, blend=blend)
+    return run_script(script, "--pictures", str(tmp_path / "out"), *arguments, blend=blend)
+
+
+@pytest.mark.parametrize("what", ["spray", "current"])
+def test_a_bake_moves_and_what_it_lacks_is_told(
+    extension, ocean_object, make_parameters, saved, tmp_path, what
+):
+    ocean = ocean_object.add(saved, make_parameters())
+    settings = ocean.ocean_tweak
+    bpy.context.view_layer.objects.active = ocean
+    buoy = bpy.data.objects.new("Buoy", None)
+    saved.collection.objects.link(buoy)
+    floating = extension("scene.floating")
+    floating.float_on(buoy, ocean, floating.Ride(drift=1.0))
+    if what == "current":
+        settings.use_current = True
+        settings.current.speed = 2.0
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    settings.use_spray = what == "spray"
+    bpy.context.view_layer.update()
+    lacking, begins = {
+        "spray": (ocean.name, "There is no spray as in frame 2 because"),
+        "current": ("Buoy", "What floats here has drifted as far as in frame 2 because"),
+    }[what]
+    assert [need.name for need in extension("scene.portability").needs_of(ocean)] == [lacking]
+    saved.frame_set(2)
+    (carrier,) = (item for item in bpy.data.objects if extension("scene.float_carrier").is_carrier(item))
+    teller = ocean if what == "spray" else carrier
+    name, before = teller.name, [modifier.name for modifier in teller.modifiers]
+    bpy.ops.wm.save_mainfile()
+    assert [modifier.name for modifier in teller.modifiers] == before
+    blend = tmp_path / "project" / "shot.blend"
+    seen, said = look(blend, [ocean.name], [1, 3], tmp_path)
+    assert "as the extension does not run here" in said
+    moved = seen[f"{ocean.name} render 3"] - seen[f"{ocean.name} render 1"]
+    assert np.abs(moved).max() > 0.05
+    if what == "spray":
+        assert any(text.startswith(begins) for text in seen[f"{ocean.name} warnings 1"])
+    said = render_as_a_farm(extension, blend, tmp_path)
     assert said.returncode == 3, said.stdout + said.stderr
-    assert f"moves {area.name} of " in said.stderr
+    assert f"moves {name} of " in said.stderr
+    bpy.ops.wm.open_mainfile(filepath=str(blend))
+    assert [modifier.name for modifier in bpy.data.objects[name].modifiers] == before

@@ -22,6 +22,8 @@ import bpy
 _FILE = re.compile(r"(?P<name>.+)_(?:disp|foam|normal|vel|foam_age)\.[^.]*\.exr")
 #: inputs of the ocean's modifiers that are on where the extension computes the sea
 _LIVE = ("Live", "Use Attributes")
+#: custom property of our node groups, and what it begins with on what a current carries along
+_GROUP, _DRIFTLESS = "ocean_tweak_group", "Ocean Tweak Driftless"
 #: custom property of the mesh of a patch
 _PATCH = "ocean_tweak_patch"
 #: inputs of its modifier that hold where its points begin
@@ -168,7 +170,9 @@ def check_extension() -> None:
     if hasattr(bpy.types.Object, "ocean_tweak"):
         return
     scene = bpy.context.scene
-    live = (item for item in scene.objects if is_live(item))
+    # what floating objects float on is in no scene
+    shown = (item for item in bpy.data.objects if scene in item.users_scene or is_driftless(item))
+    live = (item for item in shown if is_live(item))
     # nobody knows the hidden meshes of patches
     still = sorted({item.parent.name if _PATCH in item and item.parent else item.name for item in live})
     if still:
@@ -179,6 +183,12 @@ def check_extension() -> None:
         )
 
 
+def is_driftless(item: bpy.types.Object) -> bool:
+    """Whether something that a current carries along floats on an object."""
+    groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
+    return any(group is not None and str(group.get(_GROUP, "")).startswith(_DRIFTLESS) for group in groups)
+
+
 def is_live(item: bpy.types.Object) -> bool:
     """Whether an object waits for the extension, as its modifiers or, of a patch, their absence tell."""
     groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
@@ -186,7 +196,7 @@ def is_live(item: bpy.types.Object) -> bool:
         return not any(group is not None and _POINTS[0] in group_inputs(group) for group in groups)
     for modifier in item.modifiers:
         group = modifier.node_group if modifier.type == "NODES" else None
-        if group is not None and str(group.get("ocean_tweak_group", "")).startswith("Ocean Tweak "):
+        if group is not None and str(group.get(_GROUP, "")).startswith("Ocean Tweak "):
             sockets = group_inputs(group)
             if any(modifier_input(modifier, sockets[name]) for name in _LIVE if name in sockets):
                 return True
