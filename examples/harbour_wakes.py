@@ -1,167 +1,284 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Boats in a harbour from above, the picture of docs/wakes.md, and Kelvin's angle on it. Wants Pillow.
+"""Renders boats in a harbour from above, the picture of docs/wakes.md.
 
-python3 examples/harbour_wakes.py            writes docs/gallery/harbour-wakes.jpg
-python3 examples/harbour_wakes.py --measure  prints at which angle from the course the ferry's wake ends on it
+python3 -m tools.blender --in 5.2 examples/harbour_wakes.py -- --out build/wakes
+
+--jpeg DIR also writes the picture there as a JPEG file of at most 200 kB, as docs/gallery has it.
+`python3 examples/wake_angle.py` measures Kelvin's angle on it.
 """
 
 from __future__ import annotations
 
-import argparse
+import itertools
 import math
+import random
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-from PIL import Image, ImageDraw
+import bpy
+from mathutils import Matrix, Vector
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from from_above import GALLERY
+from extension import Extension, enable
+from gallery import picture_parser, render, save_jpeg, set_quality
+from wake_angle import FERRY, SPEED, WIDE
+from wakes import BOAT_LENGTH, press
 
-from ocean_tweak.core import Ocean, OceanParameters, PathSample, Places, Timing, WakeLayer, WaveLayer
+#: frames a second, of the shot, and of the picture
+FPS, LAST, PICTURED = 24, 480, 470
+#: m, of the camera
+HEIGHT = 400.0
+#: m/s and m of the light air over the harbour, m of its patch and samples along it
+WIND, FETCH, PATCH, SAMPLES = 2.2, 700.0, 160.0, 512
+#: rad, of the sun
+ELEVATION, AZIMUTH = math.radians(64.0), math.radians(-157.0)
+#: stops
+EXPOSURE = 0.35
+CONCRETE, ASPHALT, ROCK = (0.34, 0.32, 0.29), (0.10, 0.10, 0.105), (0.16, 0.15, 0.14)
+PAINTS = ((0.35, 0.06, 0.03), (0.04, 0.12, 0.25), (0.45, 0.42, 0.36), (0.06, 0.2, 0.12), (0.5, 0.28, 0.05))
 
-Array = NDArray[np.floating]
-
-PICTURE = GALLERY / "harbour-wakes.jpg"
-#: pixels, pixels a metre, and the moment that is shown, s
-WIDTH, HEIGHT, SCALE, NOW = 1280, 720, 3.2, 60.0
-#: m/s and m: of the ferry that goes straight on, on whose wake the angle is measured, and its place then
-SPEED, LENGTH, PLACE = 5.0, 16.0, (318.0, 84.0)
-#: m of a drawn boat
-_HULL = np.array(
-    [(-0.5, -0.42), (0.18, -0.5), (0.38, -0.32), (0.5, 0.0), (0.38, 0.32), (0.18, 0.5), (-0.5, 0.42)]
-)
-_SUN = np.array([-0.68, 0.28, 0.67])
-_DEEP, _SKY, _FOAM = (
-    np.array([9.0, 52.0, 66.0]),
-    np.array([176.0, 205.0, 214.0]),
-    np.array([236.0, 242.0, 243.0]),
-)
+Place = tuple[float, float]
 
 
 def main() -> None:
-    """Draw, or measure what was drawn."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    """Render as the command line says."""
+    parser = picture_parser("harbour_wakes.py")
+    parser.set_defaults(frame=PICTURED, width=800)
+    arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
+    build(enable())
+    scene = bpy.context.scene
+    set_quality(scene, arguments.width, arguments.samples)
+    scene.render.resolution_y = arguments.width * 9 // 16
+    scene.render.use_motion_blur = False
+    picture = arguments.out.resolve() / "harbour-wakes.png"
+    render(scene, arguments.frame, picture)
+    if arguments.jpeg:
+        save_jpeg(picture, arguments.jpeg.resolve() / "harbour-wakes.jpg")
+
+
+def build(extension: Extension) -> None:
+    """A new file with the harbour, ready to render."""
+    bpy.ops.wm.read_homefile(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.engine, scene.render.fps, scene.frame_end = "CYCLES", FPS, LAST
+    ocean = add_water(extension, scene)
+    add_camera(scene)
+    extension.module("scene.camera_surface").add_camera_surface(ocean, scene, budget=600_000)
+    add_quays(scene)
+    add_moored(extension, scene)
+    names = list(add_boats(extension, scene))
+    press(extension, names)
+    for layer in ocean.ocean_tweak.layers:
+        if layer.kind == "WAKE":
+            wake = layer.wake
+            wake.area_size, wake.area_resolution, wake.decay = 512.0, 1024, 0.02
+            wake.foam_half_life = 7.0
+
+
+def add_water(extension: Extension, scene: bpy.types.Scene) -> bpy.types.Object:
+    """Harbour water in a light air, under a high sun."""
+    core, water = extension.module("core"), extension.module("scene.water_material")
+    sky = extension.module("scene.sky").Sky(ELEVATION, AZIMUTH, clouds=0.0)
+    air = core.WaveLayer(wind_speed=WIND, fetch=FETCH, wind_direction=2.4)
+    sea = core.OceanParameters(
+        resolution=SAMPLES, domain_size=PATCH, seed=5, layers=(air,), timing=core.Timing(fps=FPS)
     )
-    parser.add_argument("--measure", action="store_true")
-    parser.add_argument("--out", type=Path, default=PICTURE)
-    arguments = parser.parse_args()
-    if not arguments.measure:
-        draw(arguments.out)
-    angle = measured_angle(np.asarray(Image.open(arguments.out).convert("L"), np.float64))
-    print(f"{arguments.out.name}: the wake's edge is {angle:.1f}° from the course; Kelvin's: 19.47°")
+    ocean = extension.module("scene.ocean_object").add(scene, sea, viewport_resolution=SAMPLES)
+    material = water.water_material("COASTAL")
+    water.assign(ocean, material)
+    water.describe(ocean, sea, scene)
+    extension.module("scene.scene_sky").put(scene, sky, 0.0, "Sky", scene.collection)
+    scene.view_settings.exposure, scene.view_settings.look = EXPOSURE, "AgX - Medium High Contrast"
+    return ocean
 
 
-def boats() -> tuple[WakeLayer, ...]:
-    """A ferry that goes straight on, a launch that turns, one that crosses, and one that has stopped."""
-    straight = path(lambda t: (PLACE[0] + SPEED * (t - NOW), PLACE[1]))
-    turning = path(lambda t: turned(t, (206.0, 170.0), 25.0, 4.6))
-    crossing = path(lambda t: (96.0 + 1.3 * (t - NOW), 118.0 - 4.0 * (t - NOW)))
-    stopped = path(lambda t: (352.0 + 3.6 * (min(t, NOW - 9.0) - NOW + 9.0), 196.0))
-    common = {"area_size": 512.0, "area_resolution": 1024, "decay": 0.025, "foam_half_life": 5.0}
-    return tuple(
-        WakeLayer(path=way, length=length, beam=0.28 * length, draught=draught, **common)
-        for way, length, draught in (
-            (straight, LENGTH, 0.9), (turning, 9.0, 0.5), (crossing, 9.0, 0.5), (stopped, 10.0, 0.6)
-        )
-    )  # fmt: skip
+def add_camera(scene: bpy.types.Scene) -> None:
+    """Straight above the harbour's middle, +x to the right."""
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location.z = HEIGHT
+    camera.data.angle = 2.0 * math.atan(0.5 * WIDE / HEIGHT)
+    camera.data.clip_end = 10.0 * HEIGHT
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    bpy.context.view_layer.update()
 
 
-def path(place_at: Callable[[float], tuple[float, float]]) -> tuple[PathSample, ...]:
-    """A sample every fourth of a second, from a minute before to now."""
-    return tuple(PathSample(t, *place_at(t)) for t in np.arange(0.0, NOW + 0.3, 0.25).tolist())
+def add_boats(extension: Extension, scene: bpy.types.Scene) -> Iterator[str]:
+    """A ferry that goes straight on, a launch that turns, and one that crosses: (name, place at s) each."""
+    now = (PICTURED - 1) / FPS
+    ways: dict[str, tuple[float, Callable[[float], Place]]] = {
+        "Ferry": (17.0, lambda t: (FERRY[0] + SPEED * (t - now), FERRY[1])),
+        "Launch": (10.0, lambda t: turned(t - now + 11.0, (-8.0, 40.0), 24.0, 4.4)),
+        "Pilot": (11.0, lambda t: (-112.0 + 1.5 * (t - now), -8.0 - 4.2 * (t - now))),
+    }
+    for name, (length, place) in ways.items():
+        boat = extension.module("scene.boat").new_boat(name, BOAT_LENGTH / length)
+        scene.collection.objects.link(boat)
+        for frame in range(1, LAST + 1, 6):
+            t = (frame - 1) / FPS
+            (x, y), (ahead_x, ahead_y) = place(t), place(t + 0.1)
+            boat.location = (x, y, 0.0)
+            turn = math.atan2(ahead_y - y, ahead_x - x)
+            before = boat.rotation_euler.z
+            boat.rotation_euler.z = before + math.remainder(turn - before, math.tau)
+            boat.keyframe_insert("location", frame=frame)
+            boat.keyframe_insert("rotation_euler", index=2, frame=frame)
+        for curve in extension.module("scene.animated").curves_of(boat):
+            for point in curve.keyframe_points:
+                point.interpolation = "LINEAR"
+        yield name
 
 
-def turned(time: float, middle: tuple[float, float], radius: float, speed: float) -> tuple[float, float]:
-    """Along a line, and from 14 s ago on around a middle."""
-    since = time - (NOW - 14.0)
+def add_moored(extension: Extension, scene: bpy.types.Scene) -> None:
+    """Boats that lie at the quay and the pier."""
+    berths = ((-84.0, 66.5, 0.0, 18.0), (-142.0, 67.5, math.pi, 14.0), (76.0, 65.0, -0.5 * math.pi, 9.0),
+              (94.5, 65.5, 0.5 * math.pi, 11.0), (124.5, 65.5, -0.5 * math.pi, 10.0))  # fmt: skip
+    for x, y, turn, length in berths:
+        boat = extension.module("scene.boat").new_boat("Moored", BOAT_LENGTH / length)
+        boat.location, boat.rotation_euler.z = (x, y, 0.0), turn
+        scene.collection.objects.link(boat)
+
+
+def turned(since: float, middle: Place, radius: float, speed: float) -> Place:
+    """Along a line until 0 s, and then around a middle."""
     if since < 0.0:
         return middle[0] + speed * since, middle[1] - radius
     angle = speed * since / radius
     return middle[0] + radius * math.sin(angle), middle[1] - radius * math.cos(angle)
 
 
-def sea() -> OceanParameters:
-    """A light air over the harbour."""
-    air = WaveLayer(wind_speed=1.9, fetch=500.0, wind_direction=2.4)
-    return OceanParameters(
-        resolution=256, domain_size=64.0, seed=5, layers=(air, *boats()), timing=Timing(start_frame=0)
-    )
+def add_quays(scene: bpy.types.Scene) -> None:
+    """A quay with sheds and boxes, a mole of rocks, and a pier."""
+    chance = random.Random(4)
+    concrete, asphalt = surface("Concrete", CONCRETE, 0.35), surface("Asphalt", ASPHALT, 0.5)
+    block(scene, (-115.0, 84.0), (150.0, 26.0), (-6.0, 2.2), concrete)
+    block(scene, (-115.0, 87.5), (148.0, 26.0), (2.2, 2.25), asphalt)
+    block(scene, (112.0, 88.0), (110.0, 30.0), (-6.0, 2.2), concrete)
+    block(scene, (112.0, 91.0), (108.0, 30.0), (2.2, 2.25), asphalt)
+    for x in range(-186, -42, 12):  # bollards and fenders
+        block(scene, (x, 71.8), (0.5, 0.5), (2.2, 2.9), surface("Iron", (0.02, 0.02, 0.02), 0.1))
+        block(scene, (x + 5.0, 70.8), (1.2, 0.6), (0.2, 1.8), surface("Rubber", (0.012, 0.012, 0.012), 0.1))
+    paints = [surface(f"Paint {number}", paint, 0.2) for number, paint in enumerate(PAINTS)]
+    for _ in range(46):
+        x, y = -178.0 + 6.6 * chance.randrange(13), 79.0 + 2.9 * chance.randrange(4)
+        top = 2.25 + 2.6 * chance.choice((1, 1, 2))
+        block(scene, (x, y), (6.1, 2.44), (2.25, top), chance.choice(paints))
+    roof(scene, (-62.0, 84.0), (34.0, 13.0), (2.2, 8.0, 10.5), surface("Roof", (0.32, 0.3, 0.28), 0.3))
+    roof(scene, (96.0, 86.5), (30.0, 14.0), (2.2, 7.0, 9.5), surface("Tiles", (0.28, 0.1, 0.06), 0.4))
+    for x in (70.0, 90.0, 110.0, 130.0):  # fingers of a pier
+        block(scene, (x, 66.0), (1.8, 16.0), (0.3, 0.8), surface("Planks", (0.22, 0.16, 0.1), 0.5))
+    mole(scene, ((142.0, -96.0), (128.0, -66.0), (121.0, -50.0)), chance)
 
 
-def draw(out: Path) -> None:
-    """Write the picture."""
-    row, column = np.mgrid[:HEIGHT, :WIDTH]
-    x, y = column / SCALE, (HEIGHT - 1 - row) / SCALE
-    fields = Ocean(sea()).surface(NOW, {"normal", "foam", "displacement"}, on=Places(x, y))
-    normal = fields.normal
-    towards_sky = np.clip(0.5 + 4.6 * (normal @ (_SUN * (1.0, 1.0, 0.0))), 0.0, 1.0)[..., np.newaxis]
-    glint = np.clip((normal @ (_SUN / np.linalg.norm(_SUN)) - 0.72) / 0.28, 0.0, 1.0)[..., np.newaxis] ** 12
-    colour = _DEEP + (0.06 + 0.78 * towards_sky**1.5) * (_SKY - _DEEP) * 0.72 + 30.0 * glint
-    chance = np.random.default_rng(3)
-    grain = chance.random((HEIGHT // 2, WIDTH // 2)).repeat(2, 0).repeat(2, 1)
-    white = 0.92 * np.clip(1.45 * fields.foam - 0.8 * grain * (1.0 - fields.foam), 0.0, 1.0)[..., np.newaxis]
-    colour = colour + white * (_FOAM - colour)
-    image = Image.fromarray(np.clip(colour, 0.0, 255.0).astype(np.uint8))
-    _draw_harbour(ImageDraw.Draw(image, "RGBA"))
-    image.save(out, quality=80)
-    print(f"written: {out}, {out.stat().st_size / 1024:.0f} kB")
+def surface(name: str, colour: tuple[float, float, float], spots: float) -> bpy.types.Material:
+    """A rough material with lighter and darker spots; the one of that name where there is one."""
+    known = bpy.data.materials.get(name)
+    if known is not None:
+        return known
+    material = bpy.data.materials.new(name)
+    if material.node_tree is None:  # a material has nodes from the start since Blender 5.0
+        material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    place, noise = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeTexNoise")
+    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 0.4, 8.0
+    links.new(place.outputs["Object"], noise.inputs["Vector"])
+    shades = nodes.new("ShaderNodeValToRGB")
+    for element, share in zip(shades.color_ramp.elements, (1.0 - spots, 1.0 + spots), strict=True):
+        element.color = (*(share * part for part in colour), 1.0)
+    shades.color_ramp.elements[0].position, shades.color_ramp.elements[1].position = 0.3, 0.7
+    links.new(noise.outputs[0], shades.inputs[0])
+    shader = nodes["Principled BSDF"]
+    links.new(shades.outputs[0], shader.inputs["Base Color"])
+    shader.inputs["Roughness"].default_value = 0.85
+    return material
 
 
-def _draw_harbour(pen: ImageDraw.ImageDraw) -> None:
-    for layer in boats():
-        (x, y), (vx, vy) = layer.track.place(NOW)
-        before, _ = layer.track.place(NOW - 12.0)
-        course = math.atan2(vy, vx) if math.hypot(vx, vy) > 0.1 else math.atan2(y - before[1], x - before[0])
-        for size, paint in ((1.0, (236, 236, 230)), (0.72, (150, 108, 74)), (0.4, (228, 230, 232))):
-            hull = size * _HULL * (layer.length, layer.beam)
-            c, s = math.cos(course), math.sin(course)
-            corners = hull @ np.array([(c, s), (-s, c)]) + (x, y)
-            pen.polygon([_pixel(*corner) for corner in corners], fill=paint)
-    quay = [(0.0, 225.0), (0.0, 205.0), (250.0, 209.0), (252.0, 225.0)]
-    mole = [(400.0, 0.0), (382.0, 0.0), (366.0, 58.0), (372.0, 66.0), (380.0, 62.0)]
-    for shape in (quay, mole):
-        pen.polygon([_pixel(px + 3.0, py - 2.5) for px, py in shape], fill=(4, 26, 34, 150))
-        pen.polygon([_pixel(*corner) for corner in shape], fill=(157, 152, 142))
-        pen.line([_pixel(*corner) for corner in (*shape, shape[0])], fill=(196, 191, 180), width=4)
+def block(
+    scene: bpy.types.Scene, middle: Place, size: Place, heights: Place, material: bpy.types.Material
+) -> None:
+    """A box, m, from one height to another."""
+    x, y = (0.5 * side for side in size)
+    corners = [(sx * x, sy * y, z) for z in heights for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    sides = [(i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)]
+    solid(scene, middle, corners, [(3, 2, 1, 0), (4, 5, 6, 7), *sides], material)
 
 
-def _pixel(x: float, y: float) -> tuple[float, float]:
-    return x * SCALE, HEIGHT - 1 - y * SCALE
+def roof(
+    scene: bpy.types.Scene,
+    middle: Place,
+    size: Place,
+    heights: tuple[float, float, float],
+    material: bpy.types.Material,
+) -> None:
+    """A shed, m: its foot, its eaves and its ridge."""
+    x, y = (0.5 * side for side in size)
+    low, eaves, ridge = heights
+    square = ((-x, -y), (x, -y), (x, y), (-x, y))
+    corners = [(*each, low) for each in square] + [(*each, eaves) for each in square]
+    corners += [(-x, 0.0, ridge), (x, 0.0, ridge)]
+    walls = [(i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)]
+    solid(scene, middle, corners, [*walls, (4, 5, 9, 8), (6, 7, 8, 9), (5, 6, 9), (7, 4, 8)], material)
 
 
-def measured_angle(grey: Array) -> float:
-    """The edge of the ferry's wake, degrees to starboard of its course: where brightness along rays from its
-    bow varies half as much as where it varies most, from 60 to 160 m astern.
-    """
-    distance = np.arange(60.0, 160.0, 0.2)
-    angles = np.arange(10.0, 26.0, 0.1)
-    smooth = _blurred(grey, 3)
-    found = np.zeros(len(angles))
-    for number, angle in enumerate(np.radians(angles)):
-        x, y = PLACE[0] + 0.5 * LENGTH - distance, PLACE[1] - distance * math.tan(angle)
-        column, row = (np.rint(part).astype(int) for part in _pixel(x, y))
-        line = smooth[np.minimum(row, len(grey) - 1), column]
-        found[number] = np.std(line - _blurred(line[np.newaxis], 60)[0])
-    outside = found[angles > 24.0].mean()  # of what the wind raises
-    highest = int(found.argmax())
-    beyond = found[highest:] < outside + 0.5 * (found[highest] - outside)
-    return float(angles[highest + int(np.argmax(beyond))])
+def mole(scene: bpy.types.Scene, line: Sequence[Place], chance: random.Random) -> None:
+    """Rocks heaped along a line, with a way on top."""
+    rock = surface("Rock", ROCK, 0.4)
+    for (x0, y0), (x1, y1) in itertools.pairwise(line):
+        way = Vector((x1 - x0, y1 - y0))
+        side = Vector((-way.y, way.x)).normalized()
+        for _ in range(int(9.0 * way.length)):
+            off = chance.gauss(0.0, 3.2)
+            place = Vector((x0, y0)) + chance.random() * way + off * side
+            add_rock(scene, (*place, 1.9 - 0.55 * abs(off)), chance, rock)
+        turn = Matrix.Rotation(math.atan2(way.y, way.x), 4, "Z")
+        block(scene, (0.5 * (x0 + x1), 0.5 * (y0 + y1)), (way.length + 2.0, 3.0), (1.0, 3.0),
+              surface("Concrete", CONCRETE, 0.35))  # fmt: skip
+        scene.collection.objects[-1].matrix_basis = scene.collection.objects[-1].matrix_basis @ turn
 
 
-def _blurred(grey: Array, width: int) -> Array:
-    box = np.ones(width) / width
-    padded = np.pad(grey, ((0, 0), (width, width)), mode="edge")
-    rows = np.apply_along_axis(lambda line: np.convolve(line, box, "same"), 1, padded)[:, width:-width]
-    if len(grey) == 1:
-        return rows
-    padded = np.pad(rows, ((width, width), (0, 0)), mode="edge")
-    return np.apply_along_axis(lambda line: np.convolve(line, box, "same"), 0, padded)[width:-width]
+def add_rock(
+    scene: bpy.types.Scene, place: tuple[float, float, float], chance: random.Random, rock: bpy.types.Material
+) -> None:
+    """An angular rock of a metre or two."""
+    mesh = bpy.data.meshes.get(f"Rock {chance.randrange(8)}")
+    if mesh is None:
+        mesh = new_rock(chance, rock)
+    item = bpy.data.objects.new("Rock", mesh)
+    item.location = place
+    item.rotation_euler = [chance.uniform(0.0, math.tau) for _ in range(3)]
+    item.scale = [chance.uniform(0.7, 1.5) for _ in range(3)]
+    scene.collection.objects.link(item)
+
+
+def new_rock(chance: random.Random, rock: bpy.types.Material) -> bpy.types.Mesh:
+    """A cube whose corners are off."""
+    mesh = bpy.data.meshes.new(f"Rock {sum(1 for each in bpy.data.meshes if each.name.startswith('Rock'))}")
+    corners = [
+        tuple(each * chance.uniform(0.55, 1.2) for each in (x, y, z))
+        for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)
+    ]  # fmt: skip
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    mesh.from_pydata(corners, [], faces)
+    mesh.materials.append(rock)
+    return mesh
+
+
+def solid(
+    scene: bpy.types.Scene,
+    middle: Place,
+    corners: Sequence[tuple[float, float, float]],
+    faces: Sequence[tuple[int, ...]],
+    material: bpy.types.Material,
+) -> None:
+    """A mesh at a place."""
+    mesh = bpy.data.meshes.new("Solid")
+    mesh.from_pydata(corners, [], faces)
+    mesh.materials.append(material)
+    item = bpy.data.objects.new("Solid", mesh)
+    item.location = (*middle, 0.0)
+    scene.collection.objects.link(item)
 
 
 if __name__ == "__main__":

@@ -15,8 +15,8 @@ def test_the_ferrys_wake_ends_at_kelvins_angle(monkeypatch):
     """asin 1/3, measured on the published picture."""
     images = pytest.importorskip("PIL.Image")
     monkeypatch.setattr(sys, "path", [str(ROOT / "examples"), *sys.path])
-    place = ROOT / "examples" / "harbour_wakes.py"
-    spec = importlib.util.spec_from_file_location("harbour_wakes", place)
+    place = ROOT / "examples" / "wake_angle.py"
+    spec = importlib.util.spec_from_file_location("wake_angle", place)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     grey = np.asarray(images.open(module.PICTURE).convert("L"), np.float64)
