@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A coast that is baked: points over the bed move it, in a Blender without the extension too."""
 
+import json
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
@@ -189,3 +192,33 @@ def test_it_moves_between_frames_by_its_velocity(ocean, coast, saved):
     # in a hundredth of a second water hardly changes its velocity
     assert np.percentile(missed, 99) < 1e-3
     assert missed.max() < 0.2 * np.abs(live - begun).max()
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_a_bake_of_the_command_line_is_shown(
+    ocean_object, coast_of, core, calm, saved, extension, tmp_path, own
+):
+    """On an ocean that has its coast from the bake, and on one with another coast."""
+    depth = np.repeat(np.linspace(12.0, -1.0, 51)[np.newaxis], 51, axis=0)
+    coast = core.Coast(depth=core.Raster(depth, "bed"), spacing=4.0, rim=80.0, shortest_wavelength=40.0)
+    sea = calm.replace(coast=coast)
+    (tmp_path / "sea.json").write_text(json.dumps(sea.to_dict()))
+    arguments = ["bake", "--params", str(tmp_path / "sea.json"), "--frames", "1-3", "--maps", "disp,coast"]
+    assert extension("registration").run_command([*arguments, "--out", str(tmp_path / "far")]) == 0
+    (image,) = (tmp_path / "far").rglob("sea_disp.0001.exr")
+    shallow = coast if own else replace(coast, depth=core.Raster(0.9 * depth, "shallow"))
+    ocean = ocean_object.add(saved, calm if own else calm.replace(coast=shallow))
+    bpy.context.view_layer.objects.active = ocean
+    bpy.ops.ocean.use_sequence(filepath=str(image), use_parameters=own)
+    assert ocean.ocean_tweak.error == ""
+    assert bool(ocean.ocean_tweak.bake_differs) == (not own)
+    found = []
+    for frame in (1, 3):
+        saved.frame_set(frame)
+        found.append(shown(coast_of(ocean)))
+    assert np.abs(found[1]["position"] - found[0]["position"]).max() > 0.05
+    # of the bake, not of the settings
+    whole = core.Ocean(sea)
+    rest = values(coast_of(ocean).data, "position", 3).astype(np.float64)
+    expected = whole.frame(3, on=core.Places(rest[:, 0], rest[:, 1])).displacement
+    np.testing.assert_allclose(found[1]["displacement"], expected, atol=1e-3)
