@@ -13,6 +13,7 @@ import json
 import logging
 import math
 import os
+import time
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
@@ -24,7 +25,7 @@ from numpy.typing import NDArray
 from ..core.data.errors import ParameterError
 from ..core.data.printable import printable, readable_bytes
 from ..core.numerics.memo import MEMO
-from .files import open_file, whole_file, writable_folder
+from .files import PART, open_file, whole_file, writable_folder
 from .places import SHELF_VARIABLE, environment_cache, path_of
 
 _LOG = logging.getLogger(__name__)
@@ -36,6 +37,8 @@ _LONGEST_LINE, _MOST_ARRAYS = 10_000, 16
 _KINDS = ("<c8", "<i8")
 #: of the folder in a cache of baked frames
 _IN_CACHE = "coasts"
+#: s after which nobody writes a file that was begun
+_ABANDONED = 3600.0
 #: bytes of all files in a folder together: the least recently used ones are removed
 _MOST = 4 * 10**9
 
@@ -85,6 +88,9 @@ class ArrayFiles:
         return self.folder / f"{name}{_SUFFIX}"
 
     def _make_room(self, newest: Path) -> None:
+        for part in self.folder.glob(f".*{_SUFFIX}.*{PART}"):  # of a process that was killed
+            if time.time() - part.stat().st_mtime > _ABANDONED:
+                part.unlink(missing_ok=True)
         files = [(path.stat(), path) for path in self.folder.glob(f"*{_SUFFIX}") if path != newest]
         left = self._most - newest.stat().st_size
         for status, path in sorted(files, key=lambda file: -file[0].st_mtime):

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import os
 import pickle
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -17,6 +19,7 @@ from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.export.python_process import environment
 from ocean_tweak.export.shelf import ArrayFiles, use_environment, use_folder
 
+ROOT = Path(__file__).parents[2]
 ARRAYS = (
     np.arange(5),
     (np.arange(12) + 1j * np.arange(12)[::-1]).astype(np.complex64).reshape(3, 4),
@@ -104,6 +107,29 @@ def test_what_was_not_used_for_longest_goes_where_there_is_no_room(tmp_path: Pat
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "newest.arrays", "of another program", "old.arrays",
     ]  # fmt: skip
+
+
+def test_what_a_killed_process_began_is_not_found_and_goes(tmp_path: Path) -> None:
+    script = (
+        "import os, sys, numpy as np\n"
+        "from pathlib import Path\n"
+        "from ocean_tweak.export import shelf\n"
+        "os.fsync = lambda _: os.kill(os.getpid(), 9)\n"  # all is written, and not yet in its place
+        "shelf.ArrayFiles(Path(sys.argv[1])).keep('name', (np.zeros(1000, np.complex64),))"
+    )
+    if os.name == "nt":
+        pytest.skip("this system ends processes otherwise")
+    process = subprocess.run([sys.executable, "-c", script, str(tmp_path)], cwd=ROOT, check=False)
+    assert process.returncode == -9
+    (begun,) = tmp_path.iterdir()
+    assert begun.stat().st_size > 8000
+    shelf = ArrayFiles(tmp_path)
+    assert shelf.find("name") is None
+    shelf.keep("name", ARRAYS)
+    assert begun.exists()  # perhaps another process still writes it
+    os.utime(begun, (begun.stat().st_atime - 7200, begun.stat().st_mtime - 7200))
+    shelf.keep("name", ARRAYS)
+    assert [path.name for path in tmp_path.iterdir()] == ["name.arrays"]
 
 
 def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
