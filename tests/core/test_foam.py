@@ -172,6 +172,17 @@ def one_birth(model: FoamModel, size: int = 32, born: int = 0) -> FoamHistory:
     return FoamHistory(model, compression_at, size)
 
 
+@pytest.mark.parametrize("half_life", [1e-12, 1e-60, 2e-182])
+def test_foam_that_lives_for_no_time_at_all_is_that_of_the_present(half_life: float) -> None:
+    """Also half a frame after a moment at which it may be born, when all of it has gone."""
+    history = one_birth(FoamModel(threshold=1.0, half_life=half_life, drift=(0.0, 0.0), spacing=1.0))
+    with np.errstate(over="raise", invalid="raise", divide="raise"):
+        found = [history.whitecaps(Fraction(frame, 2)) for frame in range(-2, 6)]
+    for each in found:
+        assert np.isfinite(each.foam).all()
+        assert each.foam.max() <= 1.0
+
+
 def test_foam_fades_by_half_in_its_half_life() -> None:
     history = one_birth(FoamModel(threshold=1.0, half_life=2.0, drift=(0.0, 0.0), spacing=1.0))
     assert history.whitecaps(-0.5).foam.max() == 0.0

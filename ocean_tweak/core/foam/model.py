@@ -42,6 +42,8 @@ LATTICE_RATE = 8
 #: foam below this counts as none
 FAINTEST = 2.0**-6
 
+#: lattice steps, half-life below which all foam but that of the present has vanished: shorter ones overflow
+_LEAST_HALVING = 1e-9
 #: minus the number of half-lives after which foam has certainly vanished
 _LONG_GONE = np.float32(math.log2(FAINTEST) - 1.0)
 
@@ -265,7 +267,7 @@ class Births:
         # rounding is relative to the present, so it does not depend on where the history began
         foam = self._latest[part] - np.float32(last - self._zero)
         foam -= np.float32(now / model.step - last)
-        foam *= np.float32(1.0 / self._halving)
+        foam *= np.float32(1.0 / max(self._halving, _LEAST_HALVING))
         # a subnormal result takes twenty times as long
         np.clip(foam, _LONG_GONE, np.float32(1.0), out=foam)
         np.exp2(foam, out=foam)
