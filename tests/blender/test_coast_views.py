@@ -233,3 +233,21 @@ def test_a_coast_is_in_each_scene_that_its_ocean_is_in(ocean, coast_of, extensio
     assert mesh.name not in shore.objects
     assert {mesh, points} <= set(cove.objects)
     assert mesh.users_scene == (other,)
+
+
+@pytest.mark.parametrize("ocean", [False], indirect=True, ids=["one patch"])
+def test_what_drifts_goes_with_the_water_over_the_bed(ocean, core, extension, empty_scene):
+    item = bpy.data.objects.new("Buoy", None)
+    item.location = (130.0, 70.0, 0.0)
+    empty_scene.collection.objects.link(item)
+    floating = extension("scene.floating")
+    floating.float_on(item, ocean, floating.Ride(tilt=0.0, drift=1.0))
+    whole, _ = sea(core, ocean)
+    found, expected = [], []
+    for frame in (20, 40):
+        empty_scene.frame_set(frame)
+        found.append(item.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation[:])
+        time = whole.parameters.timing.time(frame)
+        expected.append(whole.surface(time, on=core.Places(130.0, 70.0)).displacement)
+    np.testing.assert_allclose(np.subtract(found, (130.0, 70.0, 0.0)), expected, atol=0.02)
+    assert np.ptp(expected, axis=0)[:2].max() > 0.05
