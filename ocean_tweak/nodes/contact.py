@@ -20,7 +20,7 @@ import bpy
 
 from .building import Builder, Panel, Plug, Socket, output
 from .fields import coordinates
-from .names import WET
+from .names import SLOP, WET
 from .sample import OCEAN_INPUT, Spaces
 from .shading import Shading
 from .surface import SURFACE
@@ -39,9 +39,15 @@ _BOW_WIDER, _BOW = 2.0, (0.4, 0.9)
 #: wash: positions along the hull where it begins and is complete, and the growth of its breadth
 _WASH_BEGINS, _WASH_SPREADS = (-0.7, 0.6), 0.14
 
+#: slop: where it begins and hides all, as `wet`, and how uneven its upper edge is; its tongues and shreds
+#: per drip, what its thinnest shreds hide, and its roughness
+_SLOPPY, _UNEVEN_SLOP = (0.55, 0.95), 1.1
+_TONGUES, _SHREDS, _THINNEST_SLOP, _SLOP_ROUGHNESS = 2.0, 7.0, 0.15, 0.7
+
 CONTACT_INPUTS = (
     OCEAN_INPUT,
     Plug("Wet Band", "NodeSocketFloat", 0.25, "How high above the water it is wet, in Blender units"),
+    Plug("Slop", "NodeSocketFloat", 0.0, "White water that laps at it above the waterline, 0 to 1"),
 )
 _VERTEX_INPUTS = (
     ("Vector", "NodeSocketVector", (0.0, 0.0, 0.0), "The water's place in the coordinates of the object"),
@@ -85,7 +91,8 @@ def _build_contact(tree: bpy.types.NodeTree) -> None:
         "DIVIDE", coordinates(build, above)[2], build.math("MAXIMUM", build.given("Wet Band"), 1e-6)
     )
     # not clamped, so that interpolation between distant vertices is correct
-    build.finish(build.store(build.given("Geometry"), WET, build.math("SUBTRACT", 1.0, part), "FLOAT"))
+    wet = build.store(build.given("Geometry"), WET, build.math("SUBTRACT", 1.0, part), "FLOAT")
+    build.finish(build.store(wet, SLOP, build.given("Slop"), "FLOAT"))
 
 
 def _build_wet(tree: bpy.types.NodeTree) -> None:
@@ -100,6 +107,8 @@ def _build_wet(tree: bpy.types.NodeTree) -> None:
         ("Darkening", "NodeSocketFloat", 0.6, "Share of the colour's light that water on it takes"),
         ("Wet Roughness", "NodeSocketFloat", 0.07, "Of the film of water"),
         ("Drips", "NodeSocketFloat", 9.0, "Along the upper edge, in the length of the object"),
+        ("Slop", "NodeSocketFloat", 1.0, "Multiplies the white water that laps at it above the waterline"),
+        ("Slop Color", "NodeSocketColor", (0.80, 0.83, 0.83, 1.0), "Of that white water"),
     )
     given = shade.interface(outputs, (Panel("Wet Band", inputs),)).outputs
     at = shade.node("ShaderNodeTexCoord").outputs["Generated"]
@@ -107,12 +116,25 @@ def _build_wet(tree: bpy.types.NodeTree) -> None:
     height = shade.math("MULTIPLY_ADD", shade.math("SUBTRACT", ragged, 0.5), 0.6, shade.value(WET))
     wet = shade.smooth(height, 0.0, 0.45)
     kept = shade.math("SUBTRACT", 1.0, shade.math("MULTIPLY", wet, given["Darkening"]))
+    slop = _slop(shade, given, at)
+    smooth = shade.mix(wet, given["Roughness"], given["Wet Roughness"])
     shade.finish(
         {
-            "Color": shade.scale(given["Color"], kept),
-            "Roughness": shade.mix(wet, given["Roughness"], given["Wet Roughness"]),
+            "Color": shade.mix_vectors(slop, shade.scale(given["Color"], kept), given["Slop Color"]),
+            "Roughness": shade.mix(slop, smooth, _SLOP_ROUGHNESS),
         }
     )
+
+
+def _slop(shade: Shading, given: dict[str, Socket], at: Socket) -> Socket:
+    """How much of a hull is hidden by what laps at it: tongues of foam at the waterline, torn into shreds."""
+    tongues = shade.noise(at, shade.math("MULTIPLY", given["Drips"], _TONGUES), Detail=3.0)
+    height = shade.math("MULTIPLY_ADD", shade.math("SUBTRACT", tongues, 0.5), _UNEVEN_SLOP, shade.value(WET))
+    shreds = shade.noise(at, shade.math("MULTIPLY", given["Drips"], _SHREDS), Detail=3.0)
+    torn = shade.smooth(shreds, 0.38, 0.62, _THINNEST_SLOP, 1.0)
+    shown = shade.math("MULTIPLY", shade.smooth(height, *_SLOPPY), torn)
+    amount = shade.math("MULTIPLY", shade.value(SLOP), given["Slop"], clamp=True)
+    return shade.math("MULTIPLY", shown, amount)
 
 
 def _build_collar(tree: bpy.types.NodeTree) -> None:
@@ -227,7 +249,7 @@ def _build_ripple_normal(tree: bpy.types.NodeTree) -> None:
     shade.finish({"Normal Map": shade.node("ShaderNodeVectorTransform", {0: bent}, **to_ocean).outputs[0]})
 
 
-CONTACT = GroupKind("Ocean Contact", 1, _build_contact)
-WET_BAND = GroupKind("Ocean Tweak Wet Band", 1, _build_wet, "ShaderNodeTree")
+CONTACT = GroupKind("Ocean Contact", 2, _build_contact)
+WET_BAND = GroupKind("Ocean Tweak Wet Band", 2, _build_wet, "ShaderNodeTree")
 COLLAR = GroupKind("Ocean Tweak Collar", 2, _build_collar, "ShaderNodeTree")
 RIPPLE_NORMAL = GroupKind("Ocean Tweak Ripple Normal", 1, _build_ripple_normal, "ShaderNodeTree")

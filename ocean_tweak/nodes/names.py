@@ -41,6 +41,8 @@ OPEN_SHARE, BED_FOAM = "ocean_tweak_open_share", "ocean_tweak_bed_foam"
 
 #: point attribute of what touches the water: 1 at the surface, 0 at the top of the wet band, linear
 WET = "wet"
+#: and how much white water laps at it there, 0…1
+SLOP = "slop"
 
 #: point attribute of the mesh over a bed: depth of still water there, m; 0 where there is none
 COAST_DEPTH = "depth"

@@ -287,4 +287,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 13, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 14, _build, "ShaderNodeTree")

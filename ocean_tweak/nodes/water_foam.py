@@ -45,6 +45,8 @@ _PAGE = (1.5976, 0.070566)
 #: optical thickness of foam, a standard deviation of the laces inside its rim: over _GROWTH of age; and fresh
 #: where the crest breaks weakly and strongly, which it does from _STRONG on
 _THICK_OLD, _THICK_FRESH, _STRONG = (1.8, 0.22), (1.4, 5.0), (0.1, 0.7)
+#: what of the thickness is left where the wind draws foam out
+_TORN = 0.6
 #: of the logarithm of the thickness, for a grain of 1; of old and of fresh foam
 _UNEVEN = (-1.2, -0.6)
 #: where no lace is seen, at the share ½: mean of what thickness is in proportion to, and its relative
@@ -75,12 +77,14 @@ class Foam(NamedTuple):
     youth : 1 where foam is being made, towards 0 with age
     age : s
     breaking : 0…1, how strongly the crest breaks
+    streaks : 0…1, how far the wind draws it out
     """
 
     share: Socket
     youth: Socket
     age: Socket
     breaking: Socket
+    streaks: Socket
 
 
 class Cover(NamedTuple):
@@ -119,7 +123,8 @@ def foam_at(shade: Shading, given: dict[str, Socket]) -> Foam:
     by_age = shade.math("POWER", 0.5, shade.math("DIVIDE", age, _YOUTH))
     breaking = shade.value(BREAKING)
     by_birth = shade.smooth(breaking, 0.0, _BREAKS)
-    return Foam(share, shade.math("MAXIMUM", by_age, by_birth), age, breaking)
+    youth = shade.math("MAXIMUM", by_age, by_birth)
+    return Foam(share, youth, age, breaking, _streaks(shade, given))
 
 
 class _Laid(NamedTuple):
@@ -169,9 +174,8 @@ def _laid(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> _L
     unseen: Socket | float = 0.0
     slope: Socket | tuple[float, float, float] = (0.0, 0.0, 0.0)
     grain: Socket | float = 0.0
-    streaks = _streaks(shade, given)
-    variances = _variances(shade, streaks, foam)
-    weights = _weights(shade, streaks, foam)
+    variances = _variances(shade, foam)
+    weights = _weights(shade, foam)
     for number, (size, turn, stretch) in enumerate(_LACES):
         variance = variances[number]
         cell = shade.math("MULTIPLY", given["Foam Size"], size)
@@ -195,23 +199,23 @@ def _streaks(shade: Shading, given: dict[str, Socket]) -> Socket:
     return shade.mix(shade.math("LESS_THAN", asked, 0.0), asked, by_wind)
 
 
-def _variances(shade: Shading, streaks: Socket, foam: Foam) -> tuple[Socket, ...]:
+def _variances(shade: Shading, foam: Foam) -> tuple[Socket, ...]:
     """Of each lace; their sum is 1."""
     grown = shade.smooth(foam.age, *_GROWTH)
     variances: list[Socket] = []
     for part in _HALVES:
-        young = shade.mix_vectors(streaks, _YOUNG[part], _SPILLED[part])
-        old = shade.mix_vectors(streaks, _OLD[part], _DRAWN_OUT[part])
+        young = shade.mix_vectors(foam.streaks, _YOUNG[part], _SPILLED[part])
+        old = shade.mix_vectors(foam.streaks, _OLD[part], _DRAWN_OUT[part])
         aged = shade.mix_vectors(grown, young, old)
         variances += shade.separate(shade.mix_vectors(foam.youth, aged, _FRESH[part]))
     return tuple(variances)
 
 
-def _weights(shade: Shading, streaks: Socket, foam: Foam) -> tuple[Socket, ...]:
+def _weights(shade: Shading, foam: Foam) -> tuple[Socket, ...]:
     """Of each lace in the grain."""
     weights: list[Socket] = []
     for part in _HALVES:
-        old = shade.mix_vectors(streaks, _GRAIN[part], _DRAWN_GRAIN[part])
+        old = shade.mix_vectors(foam.streaks, _GRAIN[part], _DRAWN_GRAIN[part])
         weights += shade.separate(shade.mix_vectors(foam.youth, old, _FRESH_GRAIN[part]))
     return tuple(weights)
 
@@ -252,8 +256,10 @@ def _density(shade: Shading, foam: Foam, laid: _Laid, inwards: Socket) -> Socket
     inside = shade.mix(laid.unseen, shade.math("MAXIMUM", inwards, 0.0), mean)
     old = shade.smooth(foam.age, *_GROWTH, *_THICK_OLD)
     fresh = shade.smooth(foam.breaking, *_STRONG, *_THICK_FRESH)
+    torn = shade.mix(foam.streaks, 1.0, _TORN)
     uneven = shade.math("MULTIPLY", laid.grain, shade.mix(foam.youth, *_UNEVEN))
     thick = shade.math("MULTIPLY", shade.mix(foam.youth, old, fresh), shade.math("EXPONENT", uneven))
+    thick = shade.math("MULTIPLY", thick, torn)
     clumped = shade.math("EXPONENT", shade.math("MULTIPLY", inwards, _CLUMPED_GROWTH))
     clumped = shade.math("MULTIPLY", clumped, shade.mix(foam.youth, *_CLUMPED))
     variance = shade.math("MULTIPLY_ADD", laid.unseen, clumped, 0.02)

@@ -38,10 +38,12 @@ _FOAM_WIDTH, _RIPPLE_LENGTH = 0.12, 0.25
 _WIDEST_FOAM, _LONGEST_RIPPLE = 1.5, 2.0  # m
 #: by the wind in m/s: foam at a hull, and how much wider it lies around it
 _FOAM_BY_WIND = (2.0, 10.0), (0.2, 0.95)
-_WIDER_BY_WIND = (12.0, 25.0), (1.0, 5.0)
+_WIDER_BY_WIND = (4.0, 12.0, 25.0), (1.0, 2.0, 5.0)
 #: and a wash down the wind, of the length of the waterline
 _WASH_BY_WIND = (12.0, 25.0), (0.0, 1.6)
-_WET_BAND = 0.12  # of the beam
+#: how high it is wet, of the beam, and how much of the white water laps at it
+_WET_BAND_BY_WIND = (4.0, 20.0), (0.12, 0.26)
+_SLOP_BY_WIND = (3.0, 12.0), (0.0, 1.0)
 #: inputs of a collar that are links
 _LINKED = {"Vector", "Foam Map", "Height", "Time"}
 
@@ -63,7 +65,7 @@ def touch(item: bpy.types.Object, ocean: bpy.types.Object, hull: Hull | None, le
             modifier = mesh.modifiers.new(_NAME, "NODES")
             modifier.node_group = node_group(CONTACT)
             modifier.show_in_editmode = False
-            set_inputs(modifier, {"Wet Band": _WET_BAND * hull.beam})
+            set_inputs(modifier, _wetted(hull, _wind(ocean)))
         set_inputs(modifier, {"Ocean": ocean})
     refresh({item: values})
     return True
@@ -311,6 +313,15 @@ def _sized(line: Waterline, metres: float, wind: float) -> dict[str, object]:
         "Foam Width": min(_FOAM_WIDTH * beam, _WIDEST_FOAM) * float(np.interp(wind, *_WIDER_BY_WIND)),
         "Ripple Length": min(_RIPPLE_LENGTH * beam, _LONGEST_RIPPLE),
         "Wash": 2.0 * line.half_length * metres * float(np.interp(wind, *_WASH_BY_WIND)),
+    }
+
+
+def _wetted(hull: Hull, wind: Wind | None) -> Values:
+    """What a mesh's modifier knows of how far the water splashes up at it."""
+    speed = 0.0 if wind is None else wind.speed
+    return {
+        "Wet Band": float(np.interp(speed, *_WET_BAND_BY_WIND)) * hull.beam,
+        "Slop": float(np.interp(speed, *_SLOP_BY_WIND)),
     }
 
 

@@ -20,7 +20,8 @@ from ..nodes.versioned import GroupKind, is_of_kind, node_group
 
 #: the water's material that a copy follows
 _OF = "ocean_tweak_foam_of"
-_WHITE = (1.0, 1.0, 1.0, 1.0)
+#: lamps of the Solid view make a grey of 1
+_WHITE = (1.7, 1.7, 1.7, 1.0)
 _NAME = "Foam in Solid View"
 #: of a material, what the copy has of its own
 _OWN = {"name", "use_nodes", "diffuse_color", "roughness", "use_fake_user", "tag", "preview_render_type"}

@@ -300,8 +300,8 @@ def test_nothing_depends_on_itself(extension, ocean, disc, select, empty_scene, 
 
 
 @pytest.fixture
-def seen_from_above(empty_scene, tmp_path):
-    """Render the collars' foam alone, from above: (pixels, pixels) brightness, and the pixels' places."""
+def shone_from_above(empty_scene, tmp_path):
+    """Render from above what a socket of an object's material says: (pixels, pixels) brightness."""
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.type, camera.data.ortho_scale = "ORTHO", WIDTH
     camera.location = (*AT, 60.0)
@@ -313,25 +313,37 @@ def seen_from_above(empty_scene, tmp_path):
     empty_scene.render.image_settings.file_format = "OPEN_EXR"
     empty_scene.render.filepath = str(tmp_path / "foam.exr")
 
-    def pixels(ocean):
-        tree = ocean.material_slots[0].material.node_tree
-        water = next(node for node in tree.nodes if node.type == "GROUP" and "Foam Color" in node.inputs)
+    def pixels(item, socket, to):
+        tree = item.material_slots[0].material.node_tree
         shine = tree.nodes.new("ShaderNodeEmission")
-        for link in water.inputs["Foam Map"].links:
-            tree.links.new(link.from_socket, shine.inputs["Strength"])
+        if socket is not None:
+            tree.links.new(socket, shine.inputs[to])
         out = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
         tree.links.new(shine.outputs[0], out.inputs["Surface"])
-        hidden = [item for item in bpy.data.objects if item.type == "MESH" and item != ocean]
-        for item in hidden:
-            item.hide_render = True
+        hidden = [other for other in bpy.data.objects if other.type == "MESH" and other != item]
+        for other in hidden:
+            other.hide_render = True
         bpy.ops.render.render(write_still=True)
         tree.nodes.remove(shine)
-        for item in hidden:
-            item.hide_render = False
+        for other in hidden:
+            other.hide_render = False
         image = bpy.data.images.load(empty_scene.render.filepath)
         result = np.array(image.pixels[:]).reshape(PIXELS, PIXELS, 4)[..., 0]
         bpy.data.images.remove(image)
         return result
+
+    return pixels
+
+
+@pytest.fixture
+def seen_from_above(shone_from_above):
+    """The collars' foam alone, from above."""
+
+    def pixels(ocean):
+        tree = ocean.material_slots[0].material.node_tree
+        water = next(node for node in tree.nodes if node.type == "GROUP" and "Foam Color" in node.inputs)
+        links = water.inputs["Foam Map"].links
+        return shone_from_above(ocean, links[0].from_socket if links else None, "Strength")
 
     return pixels
 
@@ -415,6 +427,52 @@ def test_eevee_draws_the_same_collar(ocean, disc, select, empty_scene, seen_from
     difference = np.abs(seen_from_above(ocean) - of_cycles)
     assert of_cycles.max() > 0.5
     assert difference.mean() < 0.1 * of_cycles.mean()
+
+
+def test_strong_winds_wet_more_of_a_hull(extension, ocean, disc, select):
+    told = []
+    for speed in (2.0, 8.0, 20.0):
+        ocean.ocean_tweak.layers[0].wind_speed = speed
+        item = disc()
+        select(item)
+        bpy.ops.object.ocean_tweak_float()
+        inputs = extension("nodes.modifier_inputs").all_inputs(extension("scene.contact").modifier_of(item))
+        told.append((inputs["Wet Band"], inputs["Slop"]))
+        bpy.data.objects.remove(item)
+        update()
+    bands, slops = zip(*told, strict=True)
+    assert bands[0] < bands[1] < bands[2] < 1.0
+    assert slops[0] == 0.0 < slops[1] < slops[2] == 1.0
+
+
+def test_white_water_laps_at_a_hull_just_above_the_water(extension, empty_scene, shone_from_above):
+    """A black board that reaches from the water's surface, at the left, to the top of the wet band and on."""
+    half = 0.5 * WIDTH
+    mesh = bpy.data.meshes.new("Board")
+    corners = ((-half, -half), (half, -half), (half, half), (-half, half))
+    mesh.from_pydata([(AT[0] + x, AT[1] + y, 0.0) for x, y in corners], [], [(0, 1, 2, 3)])
+    for name, values in (("wet", (1.0, -1.0, -1.0, 1.0)), ("slop", (1.0,) * 4)):
+        mesh.attributes.new(name, "FLOAT", "POINT").data.foreach_set("value", values)
+    item = bpy.data.objects.new("Board", mesh)
+    empty_scene.collection.objects.link(item)
+    material = bpy.data.materials.new("Board")
+    if material.node_tree is None:
+        material.use_nodes = True
+    mesh.materials.append(material)
+    group = material.node_tree.nodes.new("ShaderNodeGroup")
+    group.node_tree = extension("nodes.versioned").node_group(extension("nodes.contact").WET_BAND)
+    group.inputs["Color"].default_value = (0.0, 0.0, 0.0, 1.0)
+    white = shone_from_above(item, group.outputs["Color"], "Color").mean(axis=0)
+    near, middle, top = (
+        white[: PIXELS // 16].mean(),
+        white[PIXELS // 6 : PIXELS // 3].mean(),
+        white[-60:].max(),
+    )
+    assert near > 0.25
+    assert near > 1.5 * middle > 0.0
+    assert top == 0.0
+    group.inputs["Slop"].default_value = 0.0
+    assert shone_from_above(item, group.outputs["Color"], "Color").max() == 0.0
 
 
 def test_it_is_told_where_the_water_does_not_reach(ocean, disc, select):

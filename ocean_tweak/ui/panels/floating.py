@@ -65,8 +65,10 @@ def _contact(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
                 column.prop(collar.inputs[name], "default_value", text=name)
         modifier = contact.modifier_of(item)
         if modifier is not None:
-            owner, name = input_property(modifier, "Wet Band")
-            layout.prop(owner, name, text="Wet Band")
+            column = layout.column(align=True)
+            for text in ("Wet Band", "Slop"):
+                owner, name = input_property(modifier, text)
+                column.prop(owner, name, text=text)
     text = "Leave Water Alone" if touches else float_operators.OBJECT_OT_ocean_contact.bl_label
     button = layout.operator(float_operators.OBJECT_OT_ocean_contact.bl_idname, text=text, icon="MOD_OCEAN")
     button.use_contact = not touches
