@@ -113,7 +113,7 @@ class FloatBake:
         if settings.source == "LIVE":
             if not float_riding.is_solved(plan, rider.ride):
                 return None
-            at = float_riding.place_of(rider.place, depsgraph)
+            at = float_riding.place_of(rider.place, depsgraph, plan.frame / time_stretch(scene))
             return float_riding.solve(plan, rider.ride, ocean, scene, at)
         if not float_riding.can_ride(rider.ride):
             return None

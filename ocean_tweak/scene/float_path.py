@@ -1,15 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Computes an object's transform at other frames from its keys and those of its parents, without evaluating
-them."""
+them; and those that were recorded where keys do not determine it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
 
 import bpy
+import numpy as np
 from mathutils import Euler, Matrix, Quaternion, Vector
 
 from .animated import channel_bags
+
+# custom properties of a carrier: rows of matrices, and the first and the step of their frames
+_ROWS, _FRAMES = "ocean_tweak_past", "ocean_tweak_past_frames"
+#: Blender units, and their share a unit away from the origin, by which a place is another one
+_MOVED = 1e-3
 
 
 def is_known(item: bpy.types.Object) -> bool:
@@ -69,3 +76,38 @@ def _with_parents(item: bpy.types.Object) -> Iterator[bpy.types.Object]:
     while each is not None:
         yield each
         each = each.parent
+
+
+def keep_past(carrier: bpy.types.Object, rows: Sequence[float], frames: tuple[float, float]) -> None:
+    """Keep with a carrier where it was, as `recorded` reads it.
+
+    rows : the upper three rows of a world matrix a frame, one after another
+    frames : of the animation, the first, and the step to the next
+    """
+    carrier[_ROWS], carrier[_FRAMES] = rows, frames
+
+
+def recorded(carrier: bpy.types.Object) -> Callable[[Fraction], Matrix] | None:
+    """The place of a carrier by the frame of the animation, as at the ends of what was recorded beyond them;
+    None where nothing was."""
+    if _ROWS not in carrier or _FRAMES not in carrier:
+        return None
+    rows = np.array(carrier[_ROWS]).reshape(-1, 3, 4)
+    first, step = carrier[_FRAMES]
+
+    def at(frame: Fraction) -> Matrix:
+        place = min(max((float(frame) - first) / step, 0.0), len(rows) - 1.0)
+        before = min(int(place), max(len(rows) - 2, 0))
+        share, after = place - before, min(before + 1, len(rows) - 1)
+        return Matrix((*((1.0 - share) * rows[before] + share * rows[after]).tolist(), (0.0, 0.0, 0.0, 1.0)))
+
+    return at
+
+
+def past_of(carrier: bpy.types.Object, there: Matrix, frame: Fraction) -> Callable[[Fraction], Matrix] | None:
+    """What was recorded of a carrier; None where it is not where it was then, at a frame of the animation."""
+    at = recorded(carrier)
+    if at is None:
+        return None
+    off = (np.array(at(frame)) - np.array(there))[:3]
+    return at if np.abs(off).max() <= _MOVED * (1.0 + there.translation.length) else None

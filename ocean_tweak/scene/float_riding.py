@@ -86,7 +86,9 @@ def why_not(carrier: bpy.types.Object) -> str:
     if ocean is not None and is_ocean(ocean) and settings_of(ocean).source != "LIVE":
         return "Follows the surface: on a baked ocean only Bake to Keyframes rides damped"
     if not float_path.is_known(carrier):
-        return "Its past is not known from keys: it is taken as if it had stood here"
+        if float_path.recorded(carrier) is not None:
+            return "Its past is recorded: press Float on Ocean again after a change"
+        return "Its past is not known from keys: press Float on Ocean again to record it"
     return ""
 
 
@@ -314,7 +316,8 @@ def _reasons(
         return None  # the ocean tells
     if not is_solved(plan, ride):
         return None
-    at, fps, stretch = place_of(carrier, depsgraph), frame_rate(scene), time_stretch(scene)
+    fps, stretch = frame_rate(scene), time_stretch(scene)
+    at = place_of(carrier, depsgraph, plan.frame / stretch)
     places = [at((plan.frame - seconds * fps) / stretch) for seconds in _LOOKS]
     return _Reasons(plan, ride, _plain(ocean.matrix_world), tuple(map(_plain, places)))
 
@@ -324,13 +327,13 @@ def _plain(matrix: Matrix) -> tuple[tuple[float, ...], ...]:
 
 
 def place_of(
-    carrier: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None
+    carrier: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None, frame: Fraction
 ) -> Callable[[Fraction], Matrix]:
-    """By the frame of the animation; where keys do not say all it was always where it is."""
+    """By the frame of the animation: as keys say, or as it was recorded; else always where it is at one."""
     if float_path.is_known(carrier):
         return lambda frame: float_path.matrix_at(carrier, float(frame))
     there = (carrier if depsgraph is None else carrier.evaluated_get(depsgraph)).matrix_world.copy()
-    return lambda _frame: there
+    return float_path.past_of(carrier, there, frame) or (lambda _frame: there)
 
 
 def _give(
@@ -349,7 +352,8 @@ def _give(
     if _known.get(uid) == reasons:
         return
     plan = reasons.plan
-    found = solve(plan, ride, ocean.matrix_world, scene, place_of(carrier, depsgraph))
+    at = place_of(carrier, depsgraph, plan.frame / time_stretch(scene))
+    found = solve(plan, ride, ocean.matrix_world, scene, at)
     _known[uid] = reasons
     _set(carrier, found, plan.scale, float(plan.frame))
 

@@ -5,7 +5,7 @@ import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ..scene import contact, floating, hull_cut
+from ..scene import contact, float_recording, floating, hull_cut
 from ..scene.float_bake import FloatBake
 from ..scene.float_keys import is_baked
 from ..scene.floating import FloatError, Ride
@@ -151,7 +151,7 @@ class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Let each of them float; children of others go along as they are."""
-        done, refused = 0, []
+        carriers, refused = [], []
         try:
             ocean = self.chosen_ocean(context)
         except FloatError as error:
@@ -159,10 +159,11 @@ class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
         for item in floating.outermost(floatable(context)):
             try:
                 ride = self.ride_of(item)
-                floating.float_on(item, ocean, ride, self.use_contact)
-                done += 1
+                carriers.append(floating.float_on(item, ocean, ride, self.use_contact))
             except FloatError as error:
                 refused.append(str(error))
+        float_recording.record(carriers, context.scene)
+        done = len(carriers)
         if refused:
             self.report({"WARNING" if done else "ERROR"}, "; ".join(refused))
         else:

@@ -246,6 +246,42 @@ def test_keys_tell_where_it_was(extension, boat, empty_scene):
     assert not path.is_known(boat)
 
 
+def test_what_a_constraint_moves_rides_as_what_keys_move(extension, boat, ocean, select, empty_scene):
+    """Its past is recorded by the press; moved elsewhere since, it is taken as if it had stood there."""
+    keyed = boat.copy()
+    empty_scene.collection.objects.link(keyed)
+    guide = bpy.data.objects.new("Guide", None)
+    empty_scene.collection.objects.link(guide)
+    empty_scene.frame_end = 40
+    for frame, x in ((1, 20.0), (40, 90.0)):
+        for each in (guide, keyed):
+            each.location = (x, PLACE[1], 0.0)
+            each.keyframe_insert("location", frame=frame)
+    constraint = boat.constraints.new("COPY_LOCATION")
+    constraint.target = guide
+    for item in (boat, keyed):
+        select(item)
+        assert bpy.ops.object.ocean_tweak_float(riding="DAMPED", use_contact=False) == {"FINISHED"}
+    apart = []
+    for frame in (9, 25, 40):
+        empty_scene.frame_set(frame)
+        bpy.context.view_layer.update()
+        np.testing.assert_allclose(np.array(boat.matrix_world), np.array(keyed.matrix_world), atol=2e-3)
+        apart.append(boat.matrix_world.translation.z)
+    carrier = extension("scene.float_carrier").carrier_of(boat)
+    assert "recorded" in extension("scene.float_riding").why_not(carrier)
+    guide.delta_location.y = 30.0
+    empty_scene.frame_set(24)
+    empty_scene.frame_set(25)
+    bpy.context.view_layer.update()
+    moved = np.array(boat.matrix_world)
+    assert moved[1, 3] == pytest.approx(PLACE[1] + 30.0, abs=0.1)
+    del carrier["ocean_tweak_past"]
+    empty_scene.frame_set(24)
+    empty_scene.frame_set(25)
+    np.testing.assert_allclose(np.array(boat.matrix_world), moved, atol=1e-4)
+
+
 def test_on_a_baked_ocean_keys_ride_damped_and_live_it_follows_the_surface(
     extension, ocean_object, bake, boat, select, make_parameters, empty_scene
 ):
