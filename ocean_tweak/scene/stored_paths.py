@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-r"""The paths that a .blend file keeps for its oceans: relative to it wherever there is a way, so that a
-project may be moved, copied, reached through a link and opened on another system.
+r"""The paths that a .blend file keeps for its oceans and skies: relative to it wherever there is a way, so
+that a project may be moved, copied, reached through a link and opened on another system.
 
 Links and mapped drives are never replaced by what they lead to. `//` is the folder of the file, as in
 Blender, and a backslash separates as `/` does, on every system: a file may come from Windows.
@@ -57,6 +57,8 @@ def _of_settings() -> Iterator[Kept]:
 
 def _of_images() -> Iterator[Kept]:
     images = {image for item in all_oceans() for image in images_of(item)}
+    panoramas = {scene.ocean_tweak_sky.hdri for scene in bpy.data.scenes if scene.library is None}
+    images |= {image for image in panoramas if image is not None and image.filepath}
     # raw: a file that is not there, while the .blend file is not where it will be, must not be looked for
     yield from (Kept(image, "filepath_raw", follows=True) for image in images if image.library is None)
 

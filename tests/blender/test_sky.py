@@ -358,3 +358,21 @@ def test_a_panorama_that_is_gone_is_told_and_the_rest_is_rendered(scene, hdri, t
     scene = bpy.context.scene
     assert is_panorama(scene)
     assert scene.ocean_tweak_sky.error == ""
+
+
+def test_a_panorama_moves_with_its_project(scene, hdri, tmp_path):
+    """Without the extension too: its image is then read by Blender alone."""
+    project, moved = tmp_path / "project", tmp_path / "deep" / "moved"
+    project.mkdir()
+    moved.parent.mkdir()
+    hdri = hdri.rename(project / hdri.name)
+    bpy.ops.wm.save_as_mainfile(filepath=str(project / "shot.blend"))
+    bpy.ops.ocean.use_sky(sky="NOON")
+    bpy.ops.ocean.load_hdri(filepath=str(hdri))
+    bpy.ops.wm.save_mainfile()
+    assert scene.ocean_tweak_sky.hdri.filepath == "//studio.hdr"
+    project.rename(moved)
+    bpy.ops.wm.open_mainfile(filepath=str(moved / "shot.blend"))
+    scene = bpy.context.scene
+    assert is_panorama(scene)
+    assert scene.ocean_tweak_sky.error == ""
