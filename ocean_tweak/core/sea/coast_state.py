@@ -22,7 +22,7 @@ from .part_waves import PartWaves
 Array = NDArray[np.float64]
 
 
-class SeaState(NamedTuple):
+class StateFields(NamedTuple):
     """At places of one flat shape.
 
     significant_height : (places,) m
@@ -35,7 +35,7 @@ class SeaState(NamedTuple):
     mean_direction: Array
 
     @classmethod
-    def of(cls, variance: Array, broken_share: Array, flow: Array) -> SeaState:
+    def of(cls, variance: Array, broken_share: Array, flow: Array) -> StateFields:
         """From mean squares in m², and flows (places, 2) in m²."""
         length = np.hypot(flow[..., 0], flow[..., 1])[..., np.newaxis]
         towards = np.divide(flow, length, out=np.zeros_like(flow), where=length > 1e-12)

@@ -34,7 +34,7 @@ from ..waves.coast.ground import Ground
 from ..waves.contribution import OwnFoam, OwnSpray
 from .coast_field import OverBed
 from .coast_pictures import Incoming, Pictures, fingerprint, incoming, pictures
-from .coast_state import SeaState, flow_over_bed, open_state, turned_by
+from .coast_state import StateFields, flow_over_bed, open_state, turned_by
 from .coast_swash import Swash
 from .memory import check_coast_memory
 from .part_waves import PartWaves, components, real_type
@@ -209,13 +209,13 @@ class CoastWaves:
         here = [where.read(each).astype(np.float32) for each in (foam, breaking, age)]
         return OwnFoam(here[0] * share, here[1] * share, here[2])
 
-    def state(self, x: Array, y: Array) -> SeaState:
+    def state(self, x: Array, y: Array) -> StateFields:
         """Height, breaking and direction of all waves at places in m, of one flat shape."""
         where = self.ground.between(x, y)
         share = self._weights.read(1, where).value
         variance, flow = open_state(self._parts)
         over_bed = (self.significant_height / 4.0) ** 2
-        return SeaState.of(
+        return StateFields.of(
             variance + share * (where.read(over_bed) - variance),
             share * where.read(self.broken_share),
             np.stack(

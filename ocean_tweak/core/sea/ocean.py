@@ -30,7 +30,7 @@ from ..synthesis.channels import (
 )
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
-from .coast_state import SeaState, open_state
+from .coast_state import StateFields, open_state
 from .coast_waves import CoastWaves
 from .memory import memory_need
 from .part_waves import PRECISIONS, real_type
@@ -332,12 +332,12 @@ class Ocean:
         whole = with_own_foam(self.parameters, found, x, y, time, self.coast.afloat)
         return whole.over(*self.coast.foam(x, y, time))
 
-    def _state_at(self, x: Array, y: Array) -> SeaState:
+    def _state_at(self, x: Array, y: Array) -> StateFields:
         """At flat arrays of places in m; in the open sea the same everywhere, without masks."""
         if self.coast is not None:
             return self.coast.state(x, y)
         variance, flow = open_state(self._sums.parts)
-        return SeaState.of(np.full(x.shape, variance), np.zeros(x.shape), np.tile(flow, (len(x), 1)))
+        return StateFields.of(np.full(x.shape, variance), np.zeros(x.shape), np.tile(flow, (len(x), 1)))
 
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         """(places,) float32 compression at flat arrays of rest positions in m, negative where the sea is
@@ -411,7 +411,7 @@ class Ocean:
         return find_points(x, y, fields.displacement, moving, self._sums.spacing, folded), self._sums.spacing
 
 
-def _fill(fields: Mapping[str, RealArray], made: Whitecaps | SeaState) -> None:
+def _fill(fields: Mapping[str, RealArray], made: Whitecaps | StateFields) -> None:
     """Fill the fields that were made together."""
     for name in fields.keys() & set(made._fields):
         fields[name][...] = getattr(made, name).reshape(fields[name].shape)
