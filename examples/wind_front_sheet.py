@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renders the front of examples/wind-front.json as it crosses its patch, and lays the frames out on a sheet.
 
-python3 -m tools.blender --in 5.2 examples/wind_front_sheet.py -- --out docs/gallery/wind-front.jpg
+python3 -m tools.blender --in 5.2 examples/wind_front_sheet.py -- --out build/wind-front --jpeg docs/gallery
 """
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
-import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import bpy
@@ -18,44 +17,45 @@ from PIL import Image
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from extension import enable
+from gallery import picture_parser, render, save_jpeg, set_quality
 
 SEA = Path(__file__).resolve().parent / "wind-front.json"
-FRAMES = (121, 289, 457)  # 5, 12 and 19 seconds
-WIDTH, HEIGHT, GAP = 640, 300, 4
+FRAMES = (120, 288, 456)  # 5, 12 and 19 seconds after the first
+GAP = 4  # pixels
 MOOD = "FRESH_BREEZE"
-LARGEST = 200_000  # bytes
 
 
 def main() -> None:
-    """Render as the command line says."""
-    arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
+    """Render as the command line says, and lay out."""
+    parser = picture_parser("wind_front_sheet.py")
+    parser.set_defaults(width=640, samples=32)
+    arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
     enable()
-    build(arguments.samples)
-    scene = bpy.context.scene
-    sheet = Image.new("RGB", (WIDTH, len(FRAMES) * (HEIGHT + GAP) - GAP), (20, 22, 24))
-    with tempfile.TemporaryDirectory() as folder:
-        for index, frame in enumerate(FRAMES):
-            scene.frame_set(frame)
-            scene.render.filepath = str(Path(folder) / f"{frame}.png")
-            bpy.ops.render.render(write_still=True)
-            with Image.open(scene.render.filepath) as picture:
-                sheet.paste(picture.convert("RGB"), (0, index * (HEIGHT + GAP)))
-    for quality in range(92, 40, -4):
-        sheet.save(arguments.out, quality=quality, optimize=True)
-        if arguments.out.stat().st_size < LARGEST:
-            return
-    raise RuntimeError(f"{arguments.out} stays above {LARGEST} bytes")
+    build()
+    scene, folder = bpy.context.scene, arguments.out.resolve()
+    set_quality(scene, arguments.width, arguments.samples)
+    scene.render.resolution_y = arguments.width * 15 // 32
+    scene.render.use_motion_blur = False
+    pictures = [folder / f"wind-front-{number}.png" for number in range(len(FRAMES))]
+    for frame, picture in zip(FRAMES, pictures, strict=True):
+        render(scene, arguments.frame + frame, picture)
+    sheet = folder / "wind-front.png"
+    below_each_other(pictures).save(sheet)
+    if arguments.jpeg:
+        save_jpeg(sheet, arguments.jpeg.resolve() / "wind-front.jpg")
 
 
-def parse(argv: list[str]) -> argparse.Namespace:
-    """The arguments after "--"."""
-    parser = argparse.ArgumentParser(prog="wind_front_sheet.py")
-    parser.add_argument("--out", type=Path, required=True, help="the sheet, a JPEG file")
-    parser.add_argument("--samples", type=int, default=32)
-    return parser.parse_args(argv)
+def below_each_other(pictures: Sequence[Path]) -> Image.Image:
+    """The pictures of files, of one size, from the first at the top to the last."""
+    images = [Image.open(picture).convert("RGB") for picture in pictures]
+    width, height = images[0].size
+    sheet = Image.new("RGB", (width, len(images) * (height + GAP) - GAP), (20, 22, 24))
+    for index, image in enumerate(images):
+        sheet.paste(image, (0, index * (height + GAP)))
+    return sheet
 
 
-def build(samples: int) -> None:
+def build() -> None:
     """The scene of one press with the sea of the front, seen from above its middle."""
     bpy.ops.wm.read_homefile(use_empty=True)
     bpy.ops.ocean.add_scene(mood=MOOD, use_buoy=False)
@@ -68,11 +68,6 @@ def build(samples: int) -> None:
     scene.camera.location = (0.5 * size, -0.35 * size, 0.45 * size)
     scene.camera.rotation_euler = (math.radians(54.0), 0.0, 0.0)
     scene.camera.data.lens = 20.5
-    scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
-    scene.render.use_motion_blur = False
-    scene.cycles.device = "CPU"
-    scene.cycles.samples = samples
-    scene.cycles.use_denoising, scene.cycles.denoiser = True, "OPENIMAGEDENOISE"
 
 
 if __name__ == "__main__":
