@@ -19,6 +19,8 @@ from ocean_tweak.core import (
     Water,
     WaveLayer,
 )
+from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea.shot_spray import ShotSpray
 from ocean_tweak.core.sea.spray import CameraSpray, why_none
 from ocean_tweak.core.waves.coast.breakers import breaker_spray
 
@@ -64,6 +66,15 @@ def test_any_time_alone_is_as_in_a_sequence() -> None:
     alone = CameraSpray.of(sea()).at(TIME + Fraction(2, 24), spray, BEFORE_THE_SHORE)
     for one, other in zip(found, alone, strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+def test_spray_of_a_shot_ends_beside_the_bed_as_the_mesh_does() -> None:
+    spray, parameters = Spray(life=0.5), sea()
+    baked = ShotSpray(Shot(parameters), spray, BEFORE_THE_SHORE).at(1 + 24 * int(TIME))
+    whole = CameraSpray.of(parameters).at(TIME, spray, BEFORE_THE_SHORE)
+    there = (whole.position[:, 1] >= 0.0) & (whole.position[:, 1] <= SIDE)
+    assert 50 < there.sum() < len(there)
+    np.testing.assert_array_equal(baked.position, whole.position[there])
 
 
 def test_a_gale_tears_crests_offshore_as_on_the_open_sea_and_none_over_land() -> None:
