@@ -93,8 +93,8 @@ SHOTS = {
     "golden-hour": Shot(
         "FRESH_BREEZE", (9.0, 80e3), sky="GOLDEN_HOUR", foam=1.5, away=(85.0, 115.0),
         light={
-            "sun_azimuth": math.radians(99.0), "sun_elevation": math.radians(4.0), "clouds": 0.55,
-            "exposure": 0.2,
+            "sun_azimuth": math.radians(98.0), "sun_elevation": math.radians(4.6), "clouds": 0.6,
+            "exposure": 0.9,
         },
         changes={
             "eye": 3.6, "lens": 60.0, "tilt": math.radians(1.6), "rings": 0, "crest_distance": 14.0,

@@ -23,15 +23,14 @@ from extension import enable
 
 LARGEST = 1_500_000  # bytes
 #: of the surface around the camera: small pictures show no more
-VERTICES = 300_000
+VERTICES = 150_000
 
 
 def main() -> None:
     """Render as the command line says."""
     arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
-    every = round(24 / arguments.fps)
     count = round(arguments.seconds * arguments.fps) + arguments.fade
-    frames = [arguments.frame + every * number for number in range(count)]
+    frames = [arguments.frame + arguments.every * number for number in range(count)]
     engine = arguments.engine.lower()
     paths = [arguments.out.resolve() / f"{arguments.shot}-{engine}-{frame:04d}.png" for frame in frames]
     if not all(path.exists() for path in paths):
@@ -50,7 +49,8 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--engine", default="CYCLES", choices=gallery.ENGINES)
     parser.add_argument("--webp", type=Path, required=True, help="the animation")
     parser.add_argument("--seconds", type=float, default=2.0)
-    parser.add_argument("--fps", type=int, default=12, choices=(8, 12, 24), help="of the animation")
+    parser.add_argument("--fps", type=float, default=12.0, help="of the animation")
+    parser.add_argument("--every", type=int, default=2, help="one of so many frames, of 24 in a second")
     parser.add_argument("--fade", type=int, default=6, help="frames that are blended; so many more are made")
     return parser.parse_args(argv)
 
