@@ -23,8 +23,8 @@ def test_the_layout_draws_what_blenders_can():
 
 
 def test_without_an_ocean_there_is_a_way_to_one(draw):
-    # calm, fresh breeze, storm, horizon, beach, harbour
-    scenes = ["With sky and camera:", *["ocean.add_scene"] * 6]
+    # calm, fresh breeze, storm, horizon, beach, harbour, islet
+    scenes = ["With sky and camera:", *["ocean.add_scene"] * 7]
     floating = [f"object.ocean_tweak_{name}" for name in ("float", "wake", "float_bake", "float_remove")]
     offered = ["No ocean in this scene", "mesh.ocean_tweak_add", "ocean.add_scene", *scenes, *floating]
     assert draw(None) == offered

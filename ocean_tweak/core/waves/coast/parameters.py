@@ -62,7 +62,7 @@ class Coast(Validated):
     mirror: float = number(
         0.0, 0.0, 1.0, "", "Fraction of their height that waves keep when walls throw them back; a wall is "
             "land that rises steeper than 1:1 out of the water",
-        "from rubble to smooth concrete", off=Off(0.0, 0.01, "lets walls take all of it"),
+        "from rubble, which takes all, to smooth concrete",
     )  # fmt: skip
     breaking: bool = switch(True, "Let waves break where they are too high for the depth")
     muted: bool = switch(False, "Show the open sea instead, with the same waves that reach the coast")
