@@ -146,7 +146,8 @@ def test_it_stands_behind_the_others_by_whose_order_files_know_them(found):
     attributes, baked = found["choices"]
     others = ["breaking", "foam_age", "speed"]
     assert attributes == ["velocities", "normals", "foam", "cusp", "displayColor", *others]
-    assert baked == ["disp", "foam", "normal", "vel", "slope", "strain", "foam_age", "speed", "points"]
+    images = ["disp", "foam", "normal", "vel", "slope", "strain", "foam_age", "hs", "qb", "direction"]
+    assert baked == [*images, "speed", "points", "coast"]
 
 
 def test_it_is_documented(found):
