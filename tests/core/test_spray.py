@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -322,9 +321,9 @@ def test_a_step_of_the_finest_square_looks_at_no_coarser_one_again(monkeypatch: 
     looked: list[int] = []
     original = sea_spray._broken
 
-    def counted(sea: Ocean, square: Square, time: Fraction) -> object:
+    def counted(sea: Ocean, square: Square, *others: object) -> object:
         looked.append(square.level)
-        return original(sea, square, time)
+        return original(sea, square, *others)
 
     monkeypatch.setattr(sea_spray, "_broken", counted)
     levels, spray = FoamLevels(_patched()), Spray(life=0.5)
