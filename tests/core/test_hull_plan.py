@@ -205,3 +205,30 @@ def test_what_encloses_nothing_is_refused(solid):
     }
     with pytest.raises(ValueError, match="encloses nothing"):
         hull_plan(*hulls[solid])
+
+
+def test_an_open_boat_is_dry_beside_a_house_that_is_higher_than_its_rim():
+    """At all levels above its rim up to the top of the house, and beyond."""
+    boat = lofted(
+        [np.array([(-x, -y, z), (x, -y, z), (x, y, z), (-x, y, z)])
+         for x, y, z in ((0.0, 0.0, -1.0), (8.0, 3.0, -1.0), (8.0, 3.0, 1.0))]
+    )  # fmt: skip
+    plan = hull_plan(*together(boat, box((4.0, -2.9, -0.9), (7.9, 2.9, 4.0))))
+    for z in (0.5, 1.3, 2.0, 3.0, 3.9):
+        assert is_inside(plan, -3.0, 0.0, z), z
+        assert is_inside(plan, -7.0, 2.0, z), z
+        assert not is_inside(plan, -3.0, 3.5, z), z
+
+
+def test_a_house_on_deck_that_narrows_is_known_to_its_top():
+    """Of a third of the hull's area at its foot: what is above that is not taken for a mast."""
+    hull = box((-10.0, -3.0, -2.0), (10.0, 3.0, 1.0))
+    house = lofted(
+        [np.array([(-x, -y, z), (x, -y, z), (x, y, z), (-x, y, z)])
+         for x, y, z in ((0.0, 0.0, 1.0), (5.0, 2.5, 1.0), (2.5, 1.25, 5.0), (0.0, 0.0, 5.0))]
+    )  # fmt: skip
+    plan = hull_plan(*together(hull, house))
+    assert is_inside(plan, 4.5, 0.0, 1.2)
+    for x, z in ((4.0, 3.5), (3.0, 4.7)):  # beside the house
+        assert not is_inside(plan, x, 0.0, z)
+        assert is_inside(plan, x - 2.0, 0.0, z)

@@ -29,6 +29,7 @@ from ocean_tweak.core.parameters.fingerprint import shot_fingerprint
 from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.core.waves.wake.elevation import Basin
 from ocean_tweak.core.waves.wake.fields import WakeWaves, Where
+from ocean_tweak.core.waves.wake.foam import HullFoam
 from ocean_tweak.core.waves.wake.footprint import hull_footprint
 from ocean_tweak.core.waves.wake.outlook import KELVIN_ANGLE, transverse_wavelength, wake_angle
 from ocean_tweak.core.waves.wake.track import Track
@@ -391,3 +392,18 @@ def test_images_and_layers_of_an_area_hold_it(tmp_path, capsys) -> None:
     np.testing.assert_allclose(image, expected, atol=2e-5)
     assert main(["bake", "--params", str(path), "--frames=80", "--out", str(tmp_path), "--workers=1"]) == 2
     assert "do not repeat with the domain" in capsys.readouterr().err
+
+
+def test_the_band_astern_widens_with_the_fifth_root_of_the_distance() -> None:
+    """Milgram, Skop, Peltzer & Griffin (1993); as wide as the beam at the stern."""
+    track = Track.of([0.0, 100.0], [[0.0, 0.0], [800.0, 0.0]])
+    hull = HullFoam(track, 40.0, 8.0, 1.0, 600.0, 9.81)
+    y = np.arange(0.0, 15.0, 0.02)
+    edges = []
+    for beams in (0.0, 4.0, 31.0):
+        astern = np.full(y.size, 800.0 - 20.0 - 8.0 * beams - 0.01)
+        foam = hull.at(astern, y, 100.0).foam
+        edges.append(float(y[np.argmax(foam < 0.02 * foam[0])]))  # farther out are the bow's arms
+    assert edges[0] == pytest.approx(4.0, abs=0.05)
+    assert edges[1] / edges[0] == pytest.approx(5.0**0.2, abs=0.02)
+    assert edges[2] / edges[0] == pytest.approx(32.0**0.2, abs=0.03)
