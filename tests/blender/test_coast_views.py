@@ -120,14 +120,14 @@ def test_a_coast_without_its_camera_surface_has_its_mesh_again(ocean, camera, co
 @pytest.mark.parametrize(("method", "at_rest"), [("NODES", False), ("DISPLACE", True)])
 def test_ocean_sample_sees_the_sea_over_the_bed(ocean, core, extension, empty_scene, method, at_rest):
     ocean.ocean_tweak.method = method
-    x, y = np.meshgrid(np.linspace(-250.0, 195.0, 23), np.linspace(-30.0, 260.0, 13))
+    x, y = np.meshgrid(np.linspace(-250.0, 420.0, 33), np.linspace(-30.0, 260.0, 13))
     points = np.stack((x.ravel(), y.ravel(), np.zeros(x.size)), axis=-1)
     asker = new_asker(extension, empty_scene, points, ocean, at_rest)
     empty_scene.frame_set(FRAME)
     found = answers(evaluated_mesh(asker))
     whole, time = sea(core, ocean)
     assert found["Foam"].max() > 0.5
-    assert found["Height"].std() > 0.2
+    assert found["Height"][x.ravel() < 150.0].std() > 0.2
     if at_rest:
         expected = whole.surface(time, {"displacement", "velocity"}, on=core.Places(x.ravel(), y.ravel()))
         np.testing.assert_allclose(found["Displacement"], expected.displacement, atol=6e-3)
@@ -135,8 +135,9 @@ def test_ocean_sample_sees_the_sea_over_the_bed(ocean, core, extension, empty_sc
     else:
         expected = whole.points_at(x.ravel(), y.ravel(), time)
         np.testing.assert_allclose(found["Height"].ravel(), expected.height, atol=6e-3)
-        steep = found["Normal"] - expected.normal
-        assert np.sqrt(np.mean(steep**2)) < 0.02
+        over = (x.ravel() > 20.0) & (x.ravel() < 170.0)
+        steep = (found["Normal"] - expected.normal)[over]
+        assert np.sqrt(np.mean(steep**2)) < 1e-3
 
 
 @pytest.mark.parametrize("ocean", [False], indirect=True, ids=["one patch"])

@@ -27,11 +27,13 @@ from ocean_tweak.core import (
     Water,
     WaveLayer,
 )
+from ocean_tweak.core.foam.model import Whitecaps
 from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.parameters.patch_seas import open_sea
 from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.sea import coast_pictures, coast_waves
 from ocean_tweak.core.sea.coast_outlook import coast_outlook
+from ocean_tweak.core.sea.over_bed import with_whitecaps
 from ocean_tweak.core.waves.coast.beds import BEDS, SPACING, grid
 from ocean_tweak.core.waves.coast.breakers import broken_share
 from ocean_tweak.core.waves.coast.parameters import repeats_after
@@ -466,3 +468,20 @@ def waves_k(omega: float, depth: float) -> float:
         small = 9.81 * middle * np.tanh(middle * depth) < omega**2
         low, high = (middle, high) if small else (low, middle)
     return low
+
+
+def test_whitecaps_are_left_in_proportion_to_the_open_sea_s_share() -> None:
+    ocean, full = Ocean(sea()), np.ones((SAMPLES, SAMPLES), np.float32)
+    x, y = np.array([-150.0, 100.0, 150.0, 195.0]), np.full(4, 60.0)
+    none = {name: np.zeros(4, np.float32) for name in Whitecaps._fields}
+    found = with_whitecaps(ocean, none, x, y, Whitecaps(full, full, 2.0 * full))
+    assert ocean.coast is not None
+    assert_allclose(found["foam"], ocean.coast.shares(x, y).value, atol=1e-6)
+    assert found["foam"][0] == 1.0
+    assert found["foam"][3] == 0.0
+    assert (np.diff(found["foam"][1:]) < 0.0).all()
+    # breakers of their own go before
+    own = {"foam": np.ones(4, np.float32), "breaking": np.ones(4, np.float32), "foam_age": none["foam_age"]}
+    found = with_whitecaps(ocean, own, x, y, Whitecaps(0.5 * full, 0.0 * full, 2.0 * full))
+    assert_allclose(found["foam"], 1.0)
+    assert_allclose(found["foam_age"], 0.0)
