@@ -35,6 +35,8 @@ def enable_from_source(repository):
     """Make this checkout an extension of Blender's and enable it."""
     import addon_utils  # can be found only after `import bpy`
 
+    # waves over coasts that an earlier version of the code made must not be found
+    os.environ["OCEAN_TWEAK_COASTS"] = str(repository / "coasts")
     (repository / "ocean_tweak").symlink_to(ROOT, target_is_directory=True)
     bpy.context.preferences.extensions.repos.new(
         name="Source", module="ocean_dev", custom_directory=str(repository), remote_url="", source="USER"
