@@ -37,18 +37,27 @@ def measured_angle(grey: Array) -> float:
     angles = np.arange(10.0, 26.0, 0.1)
     rows, columns = grey.shape
     scale = columns / WIDE
+    smooth = _blurred(grey)  # without what the wind raises, as far as it is shorter
     found = np.zeros(len(angles))
     for number, angle in enumerate(np.radians(angles)):
         x, y = FERRY[0] + 0.5 * LENGTH - distance, FERRY[1] - distance * np.tan(angle)
         column = np.rint(0.5 * columns + x * scale).astype(int)
         row = np.minimum(np.rint(0.5 * rows - y * scale).astype(int), rows - 1)
-        line = grey[row, column]
+        line = smooth[row, column]
         found[number] = np.std(line - _mean(line, 60))
     found = _mean(found, 7)
     outside = found[angles > 24.0].mean()  # of what the wind raises
     highest = int(found[angles < 21.0].argmax())
     beyond = found[highest:] < outside + 0.5 * (found[highest] - outside)
     return float(angles[highest + int(np.argmax(beyond))])
+
+
+def _blurred(grey: Array) -> Array:
+    """Means of 3 by 3 pixels."""
+    padded = np.pad(grey, 1, mode="edge")
+    rows, columns = grey.shape
+    parts = [padded[i : i + rows, j : j + columns] for i in range(3) for j in range(3)]
+    return np.mean(parts, axis=0)
 
 
 def _mean(line: Array, width: int) -> Array:
