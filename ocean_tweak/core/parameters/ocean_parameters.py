@@ -12,6 +12,7 @@ import dataclasses
 import json
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import count
 from typing import Any, TypeVar, overload
 
 from ..data import formats
@@ -38,7 +39,7 @@ from ..waves.coast.parameters import Coast, repeats_after
 from ..waves.contribution import Contribution, Gives
 from ..waves.hero.parameters import HeroWave
 from ..waves.image.parameters import ImageLayer
-from ..waves.kinds import KINDS, identified
+from ..waves.kinds import KINDS
 from ..waves.spectral import WaveLayer
 from ..waves.wake.parameters import PathSample, WakeLayer
 from ..waves.wind_field.parameters import WindFieldLayer, WindKey
@@ -152,7 +153,7 @@ class OceanParameters(Validated):
             reason = "must be 0 in a sea without patches, which is on one grid"
             raise ParameterError("merged_resolution", self.merged_resolution, reason)
         self._settle_tile()
-        object.__setattr__(self, "layers", identified(self.layers))
+        object.__setattr__(self, "layers", _identified(self.layers))
         check_loop(self.loop_duration, self.timing)
         self._check_layers()
         on_the_first = [
@@ -386,3 +387,22 @@ class OceanParameters(Validated):
         12.5
         """
         return cls.from_dict(parse_json(text))
+
+
+def _identified(layers: tuple[Contribution, ...]) -> tuple[Contribution, ...]:
+    """Layers with ids that are unique within each kind; layers without an id get the first free ones.
+
+    Raises ParameterError for an id that two layers of a kind have.
+    """
+    taken: dict[str, set[int]] = {kind.kind: set() for kind in KINDS}
+    for index, layer in enumerate(layers):
+        if layer.id >= 0 and layer.id in taken[layer.kind]:
+            raise ParameterError(f"layers.{index}.id", layer.id, "is already the id of another layer")
+        taken[layer.kind].add(layer.id)
+    result = list(layers)
+    for index, layer in enumerate(layers):
+        if layer.id < 0 and layer.has("id"):
+            ids = taken[layer.kind]
+            result[index] = layer.changed(id=next(number for number in count() if number not in ids))
+            ids.add(result[index].id)
+    return tuple(result)

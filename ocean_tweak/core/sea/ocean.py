@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..foam.drifting import DriftingFoam, whitecaps_at
 from ..foam.model import FoamHistory, FoamModel, Whitecaps
-from ..foam.threshold import foam_model
+from ..foam.threshold import Strains, foam_model, gaussian_strains
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch_seas import parts, patch_parameters
+from ..parameters.patch_seas import merged_bands, parts, patch_parameters
 from ..statistics.sea_statistics import Statistics, sea_statistics
 from ..synthesis.channels import (
     CHANNELS,
@@ -32,13 +32,14 @@ from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
 from .coast_state import StateFields, open_state
 from .coast_waves import CoastWaves
-from .memory import memory_need
-from .part_waves import PRECISIONS, real_type
-from .placed_waves import with_own_foam
+from .memory import check_memory, memory_need
+from .part_waves import PRECISIONS, PartWaves, real_type, strain_covariances
+from .placed_waves import PlacedWaves, check_repeats, has_tile, placed_waves, with_own_foam
+from .placed_waves import strain_covariances as placed_strain_covariances
 from .query import SurfacePoints, find_points, refine_points
 from .regions import TILE, Area, Places, Tile
-from .sea_sums import SeaSums
 from .statistics import statistics_of_patches
+from .sums import AnywhereSum, TileSum
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
@@ -81,7 +82,6 @@ class Ocean:
         self.parameters = parameters
         self.precision = precision
         self._workers = workers
-        self._sums = SeaSums(parameters, precision, workers)
 
     @property
     def patches(self) -> tuple[Ocean, ...]:
@@ -136,7 +136,7 @@ class Ocean:
         >>> sea = Ocean(OceanParameters(resolution=64, domain_size=200.0, seed=3))
         >>> sea.prepare()
         """
-        for waves in self._sums.parts:
+        for waves in self._parts:
             waves.initial_state  # noqa: B018
         if self.coast is not None:
             self.coast.make(tell)
@@ -149,7 +149,7 @@ class Ocean:
                 "initial_state: this sea is several sums of waves, or has masks: ask each of its "
                 "`patches`, or a sea without masks"
             )
-        return self._sums.parts[0].initial_state
+        return self._parts[0].initial_state
 
     def surface(
         self,
@@ -184,7 +184,7 @@ class Ocean:
         wanted = checked_outputs(outputs)
         _check_time(time)
         if isinstance(on, Tile):
-            tile, n = self._sums.tile, self.parameters.resolution
+            tile, n = self._tile, self.parameters.resolution
             fields = self._arrays(wanted, (n, n), out or {})
             tile.fill(time, wanted & OF_WAVES.keys(), fields)
             if wanted & OF_STATE:
@@ -195,7 +195,7 @@ class Ocean:
         else:
             x, y = on.rest_positions()
             fields = self._arrays(wanted, x.shape, out or {})
-            self._sums.anywhere.fill(x.ravel(), y.ravel(), time, wanted & OF_WAVES.keys(), fields)
+            self._anywhere.fill(x.ravel(), y.ravel(), time, wanted & OF_WAVES.keys(), fields)
             if wanted & OF_STATE:
                 _fill(fields, self._state_at(x.ravel(), y.ravel()))
             if wanted & OF_MEMORY:
@@ -248,9 +248,9 @@ class Ocean:
             raise ValueError(f"surface = {surface!r}: must be mesh or exact")
         _check_time(time)
         x, y = Places(x, y).rest_positions()
-        exact = self._sums.anywhere.exact_field(time) if surface == "exact" else None
-        if not self._sums.has_tile:
-            points, spacing = self._sums.anywhere.points_above(x, y, time, velocity)
+        exact = self._anywhere.exact_field(time) if surface == "exact" else None
+        if not self._has_tile:
+            points, spacing = self._anywhere.points_above(x, y, time, velocity)
         else:
             points, spacing = self._points_of_tile(x, y, time, velocity)
         return points if exact is None else refine_points(x, y, exact, points, spacing, velocity)
@@ -282,10 +282,10 @@ class Ocean:
         >>> round(sea.statistics().significant_wave_height, 2)
         2.0
         """
-        parameters = self._sums.added_up
+        parameters = self._added_up
         patches = patch_parameters(parameters)
         whole = [Ocean(patch, self.precision, self._workers) for patch in patches]
-        states = [sea.initial_state for sea in (whole if parameters.is_masked else self._sums.parts)]
+        states = [sea.initial_state for sea in (whole if parameters.is_masked else self._parts)]
         found = [sea_statistics(patch, state) for patch, state in zip(patches, states, strict=True)]
         return statistics_of_patches(parameters, found) if parameters.patches else found[0]
 
@@ -295,7 +295,7 @@ class Ocean:
 
         Its threshold is that of the sea without masks, from the strains of all parts together.
         """
-        return foam_model(self.parameters, self._sums.strains, self._sums.spacing)
+        return foam_model(self.parameters, self._strains, self._spacing)
 
     @cached_property
     def foam_history(self) -> FoamHistory:
@@ -310,7 +310,7 @@ class Ocean:
         """A further history of the same foam, for an independent sequence of times."""
         # avoid a reference cycle, so that both are freed as soon as they are unused
         sea, dtype = self.of_foam, real_type(self.precision)
-        tile, n = sea._sums.tile, sea.parameters.resolution
+        tile, n = sea._tile, sea.parameters.resolution
 
         def compression_at(time: Fraction) -> RealArray:
             # negative where the surface is stretched, as needed for interpolation in time
@@ -323,10 +323,10 @@ class Ocean:
     def _whitecaps_at(self, x: Array, y: Array, time: float | Fraction) -> Whitecaps:
         """Foam at flat arrays of places in m: that of the tile, or without one from the history of each
         place."""
-        if self._sums.has_tile:
+        if self._has_tile:
             return self.foam_history.whitecaps(time).at(x, y, self.parameters.domain_size)
         sea = self.of_foam
-        found = whitecaps_at(sea.foam_model, sea._sums.anywhere.compression_at, x, y, time)
+        found = whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
         if self.coast is None:
             return with_own_foam(self.parameters, found, x, y, time)
         whole = with_own_foam(self.parameters, found, x, y, time, self.coast.afloat)
@@ -336,13 +336,13 @@ class Ocean:
         """At flat arrays of places in m; in the open sea the same everywhere, without masks."""
         if self.coast is not None:
             return self.coast.state(x, y)
-        variance, flow = open_state(self._sums.parts)
+        variance, flow = open_state(self._parts)
         return StateFields.of(np.full(x.shape, variance), np.zeros(x.shape), np.tile(flow, (len(x), 1)))
 
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         """(places,) float32 compression at flat arrays of rest positions in m, negative where the sea is
         stretched."""
-        return self._sums.anywhere.compression_at(x, y, time)
+        return self._anywhere.compression_at(x, y, time)
 
     def new_drifting_foam(self, x: Array, y: Array) -> DriftingFoam:
         """Foam at arbitrary places that drift with it.
@@ -350,18 +350,19 @@ class Ocean:
         x, y : (places,) rest positions at time 0, m
         """
         sea = self.of_foam
-        return DriftingFoam(sea.foam_model, sea._sums.anywhere.compression_at, x, y)
+        return DriftingFoam(sea.foam_model, sea._anywhere.compression_at, x, y)
 
-    @property
+    @cached_property
     def divergence_variance(self) -> float:
         """Mean square of ∂Dx/∂x + ∂Dy/∂y, bilinear between samples, without masks."""
-        return self._sums.divergence_variance
+        (xx, yy, _), _ = self._strain_covariances((0.0, 0.0))
+        return float(xx[0] + 2.0 * xx[1] + yy[1])
 
     @cached_property
     def mean_breaking(self) -> float:
         """Mean of the breaking foam over the horizontal plane at any time."""
         model = self.foam_model
-        return self._sums.strains(model.drift).covered(max(model.threshold, model.breaking_threshold), 0.0)
+        return self._strains(model.drift).covered(max(model.threshold, model.breaking_threshold), 0.0)
 
     @property
     def foam_is_of_its_samples(self) -> bool:
@@ -378,10 +379,53 @@ class Ocean:
         resolution = self.parameters.foam.resolution
         return Ocean(self.parameters.at_resolution(resolution), self.precision, self._workers)
 
-    @property
+    @cached_property
+    def _added_up(self) -> OceanParameters:
+        """The sea with its merged patches on the separate grids from which they are summed."""
+        return merged_bands(self.parameters) if self.parameters.merged_resolution else self.parameters
+
+    @cached_property
+    def _parts(self) -> tuple[PartWaves, ...]:
+        sides = [patch.resolution for patch in self.parameters.patches if self.parameters.is_cascade]
+        samples = " and ".join(f"{side}²" for side in sides or [self.parameters.resolution])
+        check_memory(self.memory().peak(), f"A sea of {samples} samples")
+        side = self.parameters.domain_size
+        return tuple(PartWaves(part, side, self.precision, self._workers) for part in parts(self._added_up))
+
+    @cached_property
+    def _placed(self) -> tuple[PlacedWaves, ...]:
+        return placed_waves(self.parameters)
+
+    @cached_property
+    def _tile(self) -> PartWaves | TileSum:
+        """Computes the samples of the tile. Raises ValueError for a sea without one."""
+        check_repeats(self.parameters)
+        if self.parameters.is_cascade:
+            raise ValueError(
+                f"on = Tile(): patches that are separate, here {len(self.parameters.patches)}, have a tile "
+                "each, in axes of their own: ask those in `patches`, ask for an Area or Places of their sum, "
+                "or merge them with `parameters.on_one_grid(samples)`"
+            )
+        if not self.parameters.needs_summation:
+            return self._parts[0]
+        return TileSum(self.parameters, self._parts, real_type(self.precision), self._workers)
+
+    @cached_property
+    def _anywhere(self) -> AnywhereSum:
+        return AnywhereSum(self.parameters, self._parts, self._placed, self.precision, self.coast)
+
+    @cached_property
     def coast(self) -> CoastWaves | None:
         """What the waves are over the sea's bed; None for the open sea."""
-        return self._sums.coast
+        return CoastWaves(self.parameters, self._parts) if self.parameters.has_coast else None
+
+    @property
+    def _has_tile(self) -> bool:
+        return has_tile(self.parameters)
+
+    @property
+    def _spacing(self) -> float:
+        return self.parameters.domain_size / self.parameters.resolution
 
     def _arrays(
         self, wanted: frozenset[str], shape: tuple[int, ...], out: Mapping[str, RealArray]
@@ -400,6 +444,17 @@ class Ocean:
             fields[name] = array
         return fields
 
+    def _strains(self, drift: tuple[float, float]) -> Strains:
+        """Strain statistics of all parts together, seen from a point with this drift."""
+        return gaussian_strains(*self._strain_covariances(drift))
+
+    def _strain_covariances(self, drift: tuple[float, float]) -> tuple[Array, Array]:
+        between_samples = not self._has_tile
+        gradient, rates = strain_covariances(self._parts, drift, between_samples)
+        for of_gradient, of_rates in placed_strain_covariances(self.parameters, drift):
+            gradient, rates = gradient + of_gradient, rates + of_rates
+        return gradient, rates
+
     def _points_of_tile(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool
     ) -> tuple[SurfacePoints, float]:
@@ -408,7 +463,7 @@ class Ocean:
         fields = self.surface(time, outputs)
         folded = fields.min_eigenvalue < _NEARLY_FOLDED
         moving = fields.velocity if with_velocity else None
-        return find_points(x, y, fields.displacement, moving, self._sums.spacing, folded), self._sums.spacing
+        return find_points(x, y, fields.displacement, moving, self._spacing, folded), self._spacing
 
 
 def _fill(fields: Mapping[str, RealArray], made: Whitecaps | StateFields) -> None:
