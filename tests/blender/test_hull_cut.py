@@ -395,3 +395,31 @@ def test_a_hull_of_a_former_file_follows_its_visibility(water, new_boat, select,
     bpy.ops.wm.open_mainfile(filepath=file)
     (driver,) = bpy.data.materials["Sea"].node_tree.animation_data.drivers
     assert driver.driver.variables[0].targets[0].id == bpy.data.objects["Boat"]
+
+
+def test_water_below_a_keel_and_of_a_hull_that_is_gone_is_whole(
+    extension, water, new_boat, select, seen_from_above, empty_scene
+):
+    """A boat in the air cuts nothing; without its object, the water's own coordinates would be its place."""
+    empty_scene.frame_set(1)
+    boat = new_boat()
+    select(boat)
+    cut()
+    boat.visible_camera = False
+    boat.location.z = 40.0
+    bpy.context.view_layer.update()
+    assert (seen_from_above(boat)[0][..., 2] > 0.5).all()
+    tree = water.data.materials[0].node_tree
+    (own,) = [node for node in tree.nodes if node.type == "TEX_COORD"]
+    water.scale.z = 1e-3
+    boat.location.z = water.location.z
+    bpy.context.view_layer.update()
+    assert not (seen_from_above(boat)[0][..., 2] > 0.5).all()
+    boat.location.x, boat.location.y = water.location.x + 4.0, water.location.y + 2.0
+    boat.hide_render = True
+    bpy.context.view_layer.update()
+    whole = (seen_from_above(boat)[0][..., 2] > 0.5).mean()
+    boat.hide_render = False
+    with extension("scene.handlers").asleep():  # where nobody mends it
+        own.object = None
+        assert (seen_from_above(boat)[0][..., 2] > 0.5).mean() == pytest.approx(whole, abs=0.002)
