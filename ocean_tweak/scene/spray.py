@@ -39,7 +39,7 @@ _MARK = "ocean_tweak_spray"
 _MATERIAL = "ocean_tweak_spray_material"
 _NAME = "Ocean Tweak Spray"
 #: layers of mist that light goes through in Cycles
-TRANSPARENT_BOUNCES = 64
+TRANSPARENT_BOUNCES = 256
 #: frames that there are: those of live spray have no files
 _MOST = 1_048_574
 

@@ -237,7 +237,7 @@ def test_the_storm_has_it_by_itself(extension, empty_scene, monkeypatch):
     ocean = next(item for item in empty_scene.objects if item.ocean_tweak.is_ocean)
     assert ocean.ocean_tweak.error == ""
     assert ocean.ocean_tweak.to_parameters(empty_scene).spray == few
-    assert empty_scene.cycles.transparent_max_bounces >= 64
+    assert empty_scene.cycles.transparent_max_bounces >= 256
     at, camera = points(spray_of(ocean))["position"], empty_scene.camera.location - ocean.location
     away = np.abs(at[:, :2] - camera[:2]).max(axis=1)
     assert len(away) > 1000
@@ -313,8 +313,8 @@ def test_spray_of_a_deleted_ocean_goes_with_it(ocean, empty_scene):
 def test_mist_that_cycles_would_darken_is_told(extension, ocean, empty_scene):
     told = extension("scene.spray").too_few_bounces
     empty_scene.render.engine = "CYCLES"
-    assert "Cycles has 8 transparent bounces, set 64" in told(ocean, empty_scene)
-    empty_scene.cycles.transparent_max_bounces = 64
+    assert "Cycles has 8 transparent bounces, set 256" in told(ocean, empty_scene)
+    empty_scene.cycles.transparent_max_bounces = 256
     assert told(ocean, empty_scene) is None
     ocean.ocean_tweak.use_spray = False
     empty_scene.cycles.transparent_max_bounces = 8
