@@ -42,6 +42,7 @@ _WASH_BEGINS, _WASH_SPREADS = (-0.7, 0.6), 0.14
 #: slop: where it begins and hides all, as `wet`, and how uneven its upper edge is; its tongues and shreds
 #: per drip, what its thinnest shreds hide, and its roughness
 _SLOPPY, _UNEVEN_SLOP = (0.55, 0.95), 1.1
+_BELOW_SLOP = (1.2, 1.6)
 _TONGUES, _SHREDS, _THINNEST_SLOP, _SLOP_ROUGHNESS = 2.0, 7.0, 0.15, 0.7
 
 CONTACT_INPUTS = (
@@ -133,6 +134,8 @@ def _slop(shade: Shading, given: dict[str, Socket], at: Socket) -> Socket:
     shreds = shade.noise(at, shade.math("MULTIPLY", given["Drips"], _SHREDS), Detail=3.0)
     torn = shade.smooth(shreds, 0.38, 0.62, _THINNEST_SLOP, 1.0)
     shown = shade.math("MULTIPLY", shade.smooth(height, *_SLOPPY), torn)
+    # a hull that is cut out may be dry inside, below the water
+    shown = shade.math("MULTIPLY", shown, shade.smooth(shade.value(WET), *_BELOW_SLOP, 1.0, 0.0))
     amount = shade.math("MULTIPLY", shade.value(SLOP), given["Slop"], clamp=True)
     return shade.math("MULTIPLY", shown, amount)
 
@@ -250,6 +253,6 @@ def _build_ripple_normal(tree: bpy.types.NodeTree) -> None:
 
 
 CONTACT = GroupKind("Ocean Contact", 2, _build_contact)
-WET_BAND = GroupKind("Ocean Tweak Wet Band", 2, _build_wet, "ShaderNodeTree")
+WET_BAND = GroupKind("Ocean Tweak Wet Band", 3, _build_wet, "ShaderNodeTree")
 COLLAR = GroupKind("Ocean Tweak Collar", 2, _build_collar, "ShaderNodeTree")
 RIPPLE_NORMAL = GroupKind("Ocean Tweak Ripple Normal", 1, _build_ripple_normal, "ShaderNodeTree")
