@@ -28,7 +28,7 @@ _PANELS = (
             ("Color", "NodeSocketColor", (0.92, 0.93, 0.94, 1.0), "Of spume and mist"),
             ("Drops", "NodeSocketFloat", 0.9, "Opacity of single drops in their middle"),
             ("Spume", "NodeSocketFloat", 0.45, "Opacity of a piece of a sheet of spume in its middle"),
-            ("Mist", "NodeSocketFloat", 0.15, "Opacity of new mist in its middle"),
+            ("Mist", "NodeSocketFloat", 0.07, "Opacity of new mist in its middle"),
             ("Visibility", "NodeSocketFloat", 0.0, "In the air, in metres; 0 for clear air"),
             ("Haze Color", "NodeSocketColor", (0.6, 0.65, 0.7, 1.0), "The sky's at the horizon"),
         ),
@@ -65,4 +65,4 @@ def _build(tree: bpy.types.NodeTree) -> None:
     shade.finish({"Surface": shade.mix_shaders(opacity, clear, seen)})
 
 
-SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 5, _build, "ShaderNodeTree")
+SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 6, _build, "ShaderNodeTree")

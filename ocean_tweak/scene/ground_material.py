@@ -17,6 +17,8 @@ _NAME = "Ocean Tweak Ground"
 _SAND, _DARK_SAND, _WET_SAND = (0.47, 0.375, 0.26), (0.33, 0.25, 0.165), (0.125, 0.092, 0.062)
 _WRACK = (0.045, 0.036, 0.022)
 _ROCKS = ((0.055, 0.05, 0.046), (0.17, 0.145, 0.12), (0.105, 0.088, 0.07), (0.235, 0.205, 0.17))
+#: how much of the difference between beds of rock the weather takes
+_WEATHERED = 0.6
 _LICHEN, _WEED = (0.24, 0.17, 0.06), (0.022, 0.026, 0.012)
 _GRASS, _DRY_GRASS = (0.055, 0.075, 0.022), (0.16, 0.13, 0.055)
 #: attribute between which sand goes from dry to wet; the edge is uneven by so much
@@ -109,23 +111,28 @@ def _sand(shade: Shading, place: _Place) -> tuple[Socket, Socket, Socket]:
 
 def _stone(shade: Shading, place: _Place) -> tuple[Socket, Socket, Socket]:
     """Colour, roughness and relief in m: beds of different rock that dip, cracks, lichen, and weed below."""
-    tilted = shade.number("DOT_PRODUCT", place.position, (0.10, 0.16, 0.75))
+    tilted = shade.number("DOT_PRODUCT", place.position, (0.07, 0.12, 0.21))
+    folded = shade.math("MULTIPLY_ADD", place.middle, 1.1, shade.math("MULTIPLY", place.fine, 0.3))
     layer = shade.math(
-        "FRACT",
-        shade.math("MULTIPLY_ADD", place.coarse, 3.0, shade.math("MULTIPLY_ADD", place.fine, 0.25, tilted)),
+        "FRACT", shade.math("MULTIPLY_ADD", place.coarse, 3.0, shade.math("ADD", folded, tilted))
     )
     beds = shade.ramp(layer, [(n / 3.999, rock) for n, rock in enumerate((*_ROCKS, _ROCKS[0]))])
+    beds = shade.mix_vectors(_WEATHERED, beds, _ROCKS[1])
     bent = shade.vector(
-        "ADD", place.position, shade.scale(shade.combine(place.middle, place.fine, place.fine), 2.2)
+        "ADD", place.position, shade.scale(shade.combine(place.fine, place.middle, place.middle), 6.0)
     )
     cracks = [
         shade.node(
             "ShaderNodeTexVoronoi", {"Vector": bent, "Scale": scale}, feature="DISTANCE_TO_EDGE"
         ).outputs["Distance"]
-        for scale in (0.35, 1.3)
+        for scale in (0.12, 0.5)
     ]  # fmt: skip
-    wide, narrow = (shade.smooth(each, 0.0, width) for each, width in zip(cracks, (0.07, 0.1), strict=True))
-    worn = shade.math("MULTIPLY", shade.mix(0.75, 1.0, wide), shade.mix(0.45, 1.0, narrow))
+    wide, narrow = (shade.smooth(each, 0.0, width) for each, width in zip(cracks, (0.05, 0.06), strict=True))
+    # cracked in places, and whole between them
+    whole = shade.smooth(place.middle, 0.45, 0.6)
+    worn = shade.math(
+        "MULTIPLY", shade.mix(0.7, 1.0, wide), shade.math("MAXIMUM", whole, shade.mix(0.6, 1.0, narrow))
+    )
     colour = shade.scale(beds, shade.math("MULTIPLY", worn, shade.math("MULTIPLY_ADD", place.fine, 0.9, 0.6)))
     high = shade.smooth(place.height, 2.5, 5.0)
     lichen = shade.math("MULTIPLY", high, shade.smooth(place.middle, 0.56, 0.68, 0.0, 0.6))
