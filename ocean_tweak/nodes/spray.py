@@ -42,7 +42,7 @@ INPUTS = (
 )
 #: of their distance to the camera, the radii of drops and of puffs of mist at most: a drop at the lens is no
 #: ball that covers the picture, and no camera is inside a puff
-_LARGEST_DROP, _LARGEST_MIST = 0.002, 0.25
+_LARGEST_DROP, _LARGEST_MIST = 0.0006, 0.25
 #: puffs behind each other, from which on fewer and denser ones are drawn in their place, up to some density.
 # Cycles ends light in black after as many as its transparent bounces, and those are slow
 _LAYERS, _DENSEST = 8.0, 6.0
@@ -164,4 +164,4 @@ def _density(build: Builder, layers: Socket, left: Socket, seen: Socket, share: 
     return build.math("MULTIPLY", density, build.math("MULTIPLY", near, near))
 
 
-SPRAY = GroupKind("Ocean Tweak Spray", 4, _build)
+SPRAY = GroupKind("Ocean Tweak Spray", 5, _build)
