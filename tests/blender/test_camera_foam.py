@@ -247,14 +247,15 @@ def test_a_window_has_few_places_and_a_picture_from_it_all_of_them(
     shares = []
 
     def is_there():
-        shares.append(window.foam_share(ocean))
+        progress = window.progress_of(ocean)
+        shares.append(None if progress is None else progress.share)
         return not window.is_unfinished(ocean)
 
     run_until(window, is_there)
     known = [share for share in shares if share is not None]  # how much of it is made by now
     assert known == sorted(known)
     assert 0.0 <= known[0] <= known[-1] < 1.0
-    assert window.foam_share(ocean) is None
+    assert window.progress_of(ocean) is None
     empty_scene.frame_set(11)
     few = len(points.data.vertices)
     refresh = extension("scene.refresh")
