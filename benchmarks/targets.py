@@ -142,7 +142,7 @@ TARGETS = {
         "pictures of 600 waves over a bed of 512², two cores", 20.0, "s",
         what_limits="512 rows one after another, each with a series of third order along the shore for every "
         "wave, in double precision",
-        tried="waves marched in blocks, which all cores share: kept; single precision is untried",
+        tried="waves marched in blocks, which all cores share: kept; single precision, without gain",
     ),
     "coast frame": Target("displacement over a bed of about 512²", 5.0, "× one six-field frame"),
     "coast velocity": Target("displacement and velocity over a bed of 512²", 10.0, "× one six-field frame"),

@@ -23,6 +23,7 @@ from ocean_tweak.core import (
     WaveLayer,
 )
 from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea.bake import ShotSeas
 from ocean_tweak.core.sea.over_bed import mesh_over_bed
 from ocean_tweak.export.cache.estimate import estimate, process_memory
 from ocean_tweak.export.cache.job import Job
@@ -139,3 +140,14 @@ def test_its_bytes_are_foreseen(baked: Path, tmp_path: Path) -> None:
     # 721 × 400 samples of complex single precision, for each of some dozens of frequencies
     more = process_memory(Job("sea", "1", Shot(fine), ("disp", "coast"))) - process_memory(open_sea)
     assert more > 10 * 8 * 721 * 400
+
+
+def test_bytes_of_an_area_are_those_of_waves_over_the_bed(tmp_path: Path) -> None:
+    """In the open sea, height and direction are the same everywhere, and pack to nothing."""
+    sea = SEA.replace(coast=replace(SEA.coast, step=2.0))
+    job = Job("sea", "1", Shot(sea), ("hs", "qb", "direction"), "ZIP", area=Area(240.0, 256, (-40.0, 0.0)))
+    foreseen = estimate(tmp_path, job, (4,)).bytes
+    assert not list(tmp_path.iterdir())
+    fields = ShotSeas(job.shot, job.on).frames(4, job.outputs)
+    actual = sum(path.stat().st_size for path in job.write(tmp_path, 4, fields))
+    assert 0.9 * actual < foreseen < 1.3 * actual + 5 * 4096

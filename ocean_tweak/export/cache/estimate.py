@@ -17,7 +17,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from ...core import Ocean, OceanParameters
+from ...core import Coast, Ocean, OceanParameters
 from ...core.data.frames import Frame
 from ...core.data.printable import readable_bytes
 from ...core.foam.model import LATTICE_RATE
@@ -180,7 +180,8 @@ def _frame_bytes(folder: Path, job: Job, frame: Frame) -> int:
     """Of a frame's files on the disk."""
     trial = _at(job, _TRIAL)
     scale = (job.resolution / trial.resolution) ** 2
-    fields = _seas(trial).frames(frame, trial.outputs - {PARTS, OVER_BED})
+    with nothing_kept():
+        fields = _seas(trial).frames(frame, trial.outputs - {PARTS, OVER_BED})
     images = sum(_room(len(data) * scale) for data in _images(folder, trial, frame, fields))
     coast = job.coast(folder, frame)
     others = [*job.points(folder, frame), *(() if coast is None else (coast,))]
@@ -242,18 +243,26 @@ def _coast_costs(job: Job, frame: Frame) -> tuple[float, float]:
     moment = job.shot.at(frame)
     sea = moment.parameters
     assert sea.coast is not None
-    whole = ground_of(sea)
-    most = min(_COARSER * whole.step, sea.coast.rim / LEAST_RIM)
-    # of which a whole number fits into the domain, as the bed's samples must
-    step = whole.domain_size / math.ceil(whole.domain_size / most)
-    coarse = sea.replace(coast=replace(sea.coast, step=max(step, whole.step)), seed=_new_seed())
-    few, of = ground_of(coarse), Ocean(coarse, workers=1)
+    coarse = sea.replace(coast=_coarser_coast(sea), seed=_new_seed())
+    whole, few, of = ground_of(sea), ground_of(coarse), Ocean(coarse, workers=1)
     places, share = mesh_over_bed(of), whole.rows * whole.columns / (few.rows * few.columns)
     with nothing_kept():
         pictures = cpu_seconds(of.prepare)
     first = cpu_seconds(lambda: over_bed(of, places.x, places.y, moment.time))
     later = cpu_seconds(lambda: over_bed(of, places.x, places.y, moment.time + 1))
     return share * (pictures + max(0.0, first - later)), share * later
+
+
+def _coarser_coast(sea: OceanParameters) -> Coast | None:
+    """The coast of a sea with fewer samples over its bed, for trials, or as it is where no wave meets it."""
+    coast = sea.coast
+    if coast is None or coast.muted:
+        return coast
+    whole = ground_of(sea)
+    most = min(_COARSER * whole.step, coast.rim / LEAST_RIM)
+    # of which a whole number fits into the domain, as the bed's samples must
+    step = whole.domain_size / math.ceil(whole.domain_size / most)
+    return replace(coast, step=max(step, whole.step))
 
 
 def seconds_of_statistics(parameters: OceanParameters) -> float:
@@ -361,8 +370,8 @@ def _at(job: Job, most: int, is_timed: bool = False) -> Job:
         of_foam = max(16, 2 * round(foam.resolution * samples / parameters.resolution / 2))
         foam = replace(foam, resolution=of_foam)
     few: OceanParameters = parameters.at_resolution(samples).replace(foam=foam)
-    if area is not None:  # what waves over a bed take is tried on their own
-        few = open_sea(few)
+    if area is not None:  # what images hold is over the bed; what that takes is tried on its own
+        few = open_sea(few) if is_timed else few.replace(coast=_coarser_coast(parameters))
     if is_timed:
         few = few.replace(foam=replace(foam, half_life=min(foam.half_life, _SHORT_FOAM)))
         if samples < parameters.resolution:  # else the bake itself goes on with these waves
