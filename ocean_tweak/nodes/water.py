@@ -20,7 +20,7 @@ from .shading import VISIBILITY, Shading
 from .surface_detail import FEWEST_WAVES, MOST_WAVES
 from .versioned import GroupKind
 from .water_foam import foam_at, foam_cover, foam_shader
-from .water_light import body, coefficients, crest_glow
+from .water_light import body, coefficients, crest_glow, light_through_crests
 from .water_pattern import SLOPES, Place, gust, place, ripples
 
 #: ripples: size of their tile in samples of the mesh, turn in rad, share of the slope variance
@@ -161,15 +161,16 @@ def _build(tree: bpy.types.NodeTree) -> None:
     normal = _normal(shade, given, slope)
     below = body(shade, given, absorption, backscatter)
     lit = shade.math("SUBTRACT", 1.0, cover.shaded)
+    behind = light_through_crests(shade, given, absorption)
     inputs = {
         "Base Color": shade.mix_vectors(through, shade.scale(below, lit), (1.0,) * 3),
         "Transmission Weight": through, "Roughness": roughness, "IOR": given["IOR"], "Normal": normal,
         "Specular IOR Level": shade.math("MULTIPLY", _mirrored(shade, normal), lit),
-        "Emission Color": crest_glow(shade, given, absorption), "Emission Strength": 1.0,
+        "Emission Color": crest_glow(shade, given, behind), "Emission Strength": 1.0,
     }  # fmt: skip
     water = shade.node("ShaderNodeBsdfPrincipled", inputs, distribution="GGX").outputs[0]
     piled = _normal(shade, given, cover.slope)
-    foam_shown = foam_shader(shade, given, cover, piled)
+    foam_shown = foam_shader(shade, given, cover, piled, behind)
     shown = shade.mix_shaders(shade.math("MULTIPLY", cover.amount, cover.density), water, foam_shown)
     hazy = _in_haze(shade, given, at, shown)
     shade.finish({"Surface": hazy, "Volume": _volume(shade, given, at), "Foam": cover.amount})
@@ -287,4 +288,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 14, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 15, _build, "ShaderNodeTree")

@@ -66,6 +66,9 @@ _EDGE, _BILLOW = (0.035, 0.05), 0.055
 _CREASED, _SHADOW = 0.35, 0.17
 #: from a rim outwards, in standard deviations of the laces: where water is shaded by foam, and how much
 _BESIDE, _SHADED = 0.25, (0.08, 0.4)
+#: of light from behind, what foam of the optical thickness 9 lets through evenly: 1/(1 + ¾(1 - g)τ) with g =
+#: 0.85, the two-flow model of a layer that absorbs nothing
+_THROUGH = 0.5
 #: how far bubbles reach beyond the foam above them, and how softly, in standard deviations of the laces
 _HALO, _HALO_SOFT = 0.7, 0.6
 
@@ -298,10 +301,14 @@ def _steepness(shade: Shading, given: dict[str, Socket], foam: Foam, inwards: So
     return shade.math("MULTIPLY", shade.math("SUBTRACT", billow, edge), given["Foam Relief"])
 
 
-def foam_shader(shade: Shading, given: dict[str, Socket], cover: Cover, normal: Socket) -> Socket:
-    """Bubbles scatter all light that meets them."""
+def foam_shader(
+    shade: Shading, given: dict[str, Socket], cover: Cover, normal: Socket, behind: Socket
+) -> Socket:
+    """Bubbles scatter all light that meets them, also what comes through a crest from behind."""
+    colour = shade.scale(given["Foam Color"], cover.light)
+    through = shade.scale(shade.vector("MULTIPLY", colour, behind), _THROUGH / math.pi)
     inputs = {
-        "Base Color": shade.scale(given["Foam Color"], cover.light), "Roughness": given["Foam Roughness"],
-        "IOR": given["IOR"], "Normal": normal,
+        "Base Color": colour, "Roughness": given["Foam Roughness"],
+        "IOR": given["IOR"], "Normal": normal, "Emission Color": through, "Emission Strength": 1.0,
     }  # fmt: skip
     return shade.node("ShaderNodeBsdfPrincipled", inputs).outputs[0]

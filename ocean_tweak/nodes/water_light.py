@@ -68,27 +68,33 @@ def body(shade: Shading, given: dict[str, Socket], absorption: Socket, backscatt
     return shade.vector("DIVIDE", shade.scale(below, 1.0 - THROWN_BACK), kept)
 
 
-def crest_glow(shade: Shading, given: dict[str, Socket], absorption: Socket) -> Socket:
-    """Radiance of the sun's light that shines through crests from behind."""
-    sun = shade.vector("NORMALIZE", given["Sun Direction"])
-    x, y, _ = shade.separate(sun)
+def light_through_crests(shade: Shading, given: dict[str, Socket], absorption: Socket) -> Socket:
+    """Irradiance of the sun on the side of a crest that is turned away from it, through the crest."""
+    x, y, _ = shade.separate(_to_sun(shade, given))
     level = shade.combine(x, y)
-    geometry = shade.node("ShaderNodeNewGeometry").outputs
-    turned_away = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", geometry["Normal"], level), -1.0)
+    normal = shade.node("ShaderNodeNewGeometry").outputs["Normal"]
+    turned_away = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", normal, level), -1.0)
     through = shade.smooth(turned_away, *_AWAY)
-    towards = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", geometry["Incoming"], sun), -1.0)
-    nearer = shade.math("MULTIPLY_ADD", towards, -_FORWARD, 1.0)
-    phase = shade.math("DIVIDE", (1.0 - _FORWARD**2) / 12.566, shade.math("MULTIPLY", nearer, nearer))
     # a sun overhead meets no crest's back
     meets = shade.number("LENGTH", level)
     sharp = sharpness(shade)
-    way = shade.mix(sharp, *_WAYS)
-    strength = shade.math(
-        "MULTIPLY", shade.math("MULTIPLY", phase, through), shade.math("MULTIPLY", meets, sharp)
-    )
-    strength = shade.math("MULTIPLY", shade.math("MULTIPLY", strength, given["Crest Glow"]), _SCATTERED)
-    seen = shade.vector("MULTIPLY", given["Sun Light"], _left_after(shade, absorption, way))
-    return shade.scale(seen, strength)
+    share = shade.math("MULTIPLY", shade.math("MULTIPLY", through, meets), sharp)
+    share = shade.math("MULTIPLY", share, given["Crest Glow"])
+    left = _left_after(shade, absorption, shade.mix(sharp, *_WAYS))
+    return shade.scale(shade.vector("MULTIPLY", given["Sun Light"], left), share)
+
+
+def crest_glow(shade: Shading, given: dict[str, Socket], through: Socket) -> Socket:
+    """Radiance towards the eye of light that comes through a crest."""
+    incoming = shade.node("ShaderNodeNewGeometry").outputs["Incoming"]
+    towards = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", incoming, _to_sun(shade, given)), -1.0)
+    nearer = shade.math("MULTIPLY_ADD", towards, -_FORWARD, 1.0)
+    phase = shade.math("DIVIDE", (1.0 - _FORWARD**2) / 12.566, shade.math("MULTIPLY", nearer, nearer))
+    return shade.scale(through, shade.math("MULTIPLY", phase, _SCATTERED))
+
+
+def _to_sun(shade: Shading, given: dict[str, Socket]) -> Socket:
+    return shade.vector("NORMALIZE", given["Sun Direction"])
 
 
 def _left_after(shade: Shading, lost: Socket, way: Socket) -> Socket:

@@ -210,6 +210,27 @@ def test_crests_before_a_low_sun_shine_green(inputs, sea, seen):
     assert glow(inputs, seen).max() < 0.02 * green
 
 
+def test_foam_on_the_shaded_side_of_a_crest_is_lit_through_it(inputs, sea, seen):
+    """By what 1.2 m of water leave of the sun (Beer and Lambert), and brighter than water is there."""
+    absorption = np.array([0.40, 0.105, 0.19])
+    inputs["Absorption"].default_value = (*absorption, 1.0)
+    cusp = sea.data.attributes.new("cusp", "FLOAT", "POINT")
+    cusp.data.foreach_set("value", np.full(4, 1.0, np.float32))
+    for vertex in sea.data.vertices:
+        vertex.co.z = 0.3 * vertex.co.y
+    inputs["Sun Direction"].default_value = (0.0, 0.98, 0.2)
+    of_water = glow(inputs, seen)
+    add_foam(sea, 1.0)
+    of_foam = glow(inputs, seen)
+    colour = np.array(inputs["Foam Color"].default_value[:3])
+    left = colour * np.exp(-1.2 * absorption)
+    np.testing.assert_allclose(of_foam / of_foam[1], left / left[1], rtol=0.02)
+    assert of_foam.min() > of_water.min()
+    assert 0.05 < of_foam[1] / (8.0 * left[1] / math.pi) < 0.5  # no more than half gets through
+    inputs["Sun Direction"].default_value = (0.0, -0.98, 0.2)
+    assert glow(inputs, seen).max() < 0.02 * of_foam[1]
+
+
 def test_the_lamp_lights_the_crests_wherever_it_turns(water, empty_scene, extension):
     sky = extension("scene.sky").Sky(math.radians(20.0), math.radians(30.0))
     sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
