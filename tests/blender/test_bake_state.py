@@ -110,7 +110,7 @@ def test_an_opened_file_is_looked_at(baked, tmp_path):
 
 
 def test_the_console_hears_it_once_a_shot(baked, extension, empty_scene, caplog):
-    handlers = extension("scene.handlers")
+    handlers = extension("scene.scene_handlers")
     handlers.begin_render(empty_scene)
     assert caplog.text == ""
     baked.ocean_tweak.seed = 8
@@ -188,6 +188,6 @@ def test_a_bake_from_before_foam_had_an_age_is_shown_with_a_word_about_it(
     assert np.abs(grid - expected).max() < 2e-3
     assert not found["breaking"].any()
     caplog.clear()
-    extension("scene.handlers").begin_render(empty_scene)
+    extension("scene.scene_handlers").begin_render(empty_scene)
     assert caplog.text.count("was made before foam had an age") == 1
     assert str(folder) in caplog.text

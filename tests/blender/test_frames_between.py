@@ -164,7 +164,7 @@ def test_what_floats_is_keyed_on_that_slow_motion(extension, baked, empty_scene)
 def test_a_bake_without_velocity_is_told_when_blur_is_on(extension, baked, empty_scene, caplog):
     item = baked(maps=("disp",))
     told = extension("scene.portability").sharp_under_blur
-    begin = extension("scene.handlers").begin_render
+    begin = extension("scene.scene_handlers").begin_render
     empty_scene.render.use_motion_blur = False
     assert told(item, empty_scene) == ""
     begin(empty_scene)
@@ -173,7 +173,7 @@ def test_a_bake_without_velocity_is_told_when_blur_is_on(extension, baked, empty
     lines = [record.message for record in caplog.records if "blur" in record.message]
     assert lines == [f"{item.name}, frame 1: {told(item, empty_scene)}"]
     assert "Bake it with Velocity on" in lines[0]
-    extension("scene.handlers").end_render(empty_scene)
+    extension("scene.scene_handlers").end_render(empty_scene)
     assert told(baked(), empty_scene) == ""
 
 

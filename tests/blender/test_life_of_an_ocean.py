@@ -171,7 +171,7 @@ def test_a_bug_is_not_hidden(add, make_parameters, core, extension, empty_scene,
     extension("core.numerics.memo").MEMO.drop()
     monkeypatch.setattr(core.Ocean, "surface", lambda *a, **k: {}["missing"])
     with pytest.raises(KeyError):
-        extension("scene.handlers").refresh_on_frame_change(empty_scene)
+        extension("scene.scene_handlers").refresh_on_frame_change(empty_scene)
 
 
 def test_sea_in_an_instanced_collection_moves(
