@@ -19,7 +19,7 @@ from ..core.parameters.patch_seas import open_sea
 from ..core.sea.coast_outlook import CoastOutlook, coast_cost, coast_outlook
 from ..core.sea.memory import beyond_budget, check_coast_memory, check_memory
 from ..core.sea.placed_waves import has_tile, makes_foam
-from ..core.sea.spray import expected_count, why_none
+from ..core.sea.spray_outlook import expected_count, why_none
 from ..core.spray.columns import BYTES_IN_FILE
 from ..core.statistics import sea_scales
 from ..core.statistics.sea_spectrum import SeaSpectrum

@@ -11,7 +11,7 @@ from ..core.data.frames import Frame
 from ..core.sea.bake import BakedFrame
 from ..core.sea.placed_waves import has_tile
 from ..core.sea.shot_spray import ShotSpray
-from ..core.sea.spray import check_spray, is_around
+from ..core.sea.spray_outlook import check_spray, is_around
 from ..export.cache.locks import claimed
 from ..export.spray import SpraySequence, WantedSpray
 from .outcome import DONE, FAILED, UsageError

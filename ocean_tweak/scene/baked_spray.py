@@ -16,7 +16,7 @@ from ..core.data.plain_data import from_plain, to_plain
 from ..core.data.printable import without_exponent
 from ..core.parameters.spray import Spray
 from ..core.sea.placed_waves import repeating
-from ..core.sea.spray import why_none
+from ..core.sea.spray_outlook import why_none
 from ..core.spray.columns import COLUMNS
 from ..export.frame_files import SPRAY, files_start
 from ..export.ply import told_by_ply

@@ -17,7 +17,8 @@ from ..core import Ocean, OceanParameters
 from ..core.numerics.memo import MEMO
 from ..core.parameters.spray import Spray
 from ..core.sea.placed_waves import is_seen_around, repeating
-from ..core.sea.spray import CameraSpray, TileSpray, above_bed, why_none
+from ..core.sea.spray import CameraSpray, TileSpray, above_bed
+from ..core.sea.spray_outlook import why_none
 from ..core.spray.columns import columns
 from ..core.spray.particles import Particles
 from . import water_material

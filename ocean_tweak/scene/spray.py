@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..core.data.frames import held_frame
 from ..core.parameters.spray import Spray
-from ..core.sea.spray import why_none
+from ..core.sea.spray_outlook import why_none
 from ..core.spray.columns import COLUMNS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.shading import Shading

@@ -338,7 +338,7 @@ def test_a_file_is_without_points_but_with_their_material(extension, ocean, empt
 
 
 def test_more_than_the_memory_holds_is_told(extension, ocean, monkeypatch):
-    monkeypatch.setattr(extension("core.sea.spray"), "usable_memory", lambda: 200_000)
+    monkeypatch.setattr(extension("core.sea.spray_outlook"), "usable_memory", lambda: 200_000)
     ocean.ocean_tweak.spray.amount = 50.0
     assert "would do" in ocean.ocean_tweak.error
 
@@ -377,8 +377,8 @@ def test_a_window_does_not_wait_while_a_thread_looks_back(extension, asked, monk
 
 def test_what_failed_is_not_near(extension, asked, monkeypatch):
     module = extension("scene.spray")
-    monkeypatch.setattr(extension("core.sea.spray"), "usable_memory", lambda: 1_000)
-    with pytest.raises(extension("core.sea.spray").SprayError):
+    monkeypatch.setattr(extension("core.sea.spray_outlook"), "usable_memory", lambda: 1_000)
+    with pytest.raises(extension("core.sea.spray_outlook").SprayError):
         module.wanted(*asked).make()
     monkeypatch.undo()
     assert not module.refresh(*asked, patient=False)

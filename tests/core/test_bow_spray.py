@@ -25,7 +25,8 @@ from ocean_tweak.core.sea.foam_rings import FoamRings, Place
 from ocean_tweak.core.sea.hull_motion import HullMotion
 from ocean_tweak.core.sea.patch_plan import Wish, planned
 from ocean_tweak.core.sea.placed_waves import has_tile, is_seen_around, own_spray
-from ocean_tweak.core.sea.spray import CameraSpray, check_spray, why_none
+from ocean_tweak.core.sea.spray import CameraSpray
+from ocean_tweak.core.sea.spray_outlook import check_spray, why_none
 from ocean_tweak.core.spray.particles import Particles
 
 SPEED = 9.0

@@ -21,7 +21,8 @@ from ocean_tweak.core import (
 )
 from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.core.sea.shot_spray import ShotSpray
-from ocean_tweak.core.sea.spray import CameraSpray, why_none
+from ocean_tweak.core.sea.spray import CameraSpray
+from ocean_tweak.core.sea.spray_outlook import why_none
 from ocean_tweak.core.waves.coast.breakers import breaker_spray
 
 SIDE = 200.0

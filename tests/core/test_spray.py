@@ -15,9 +15,11 @@ from ocean_tweak.core.numerics import random
 from ocean_tweak.core.parameters.fingerprint import shot_fingerprint
 from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.core.sea import spray as sea_spray
+from ocean_tweak.core.sea import spray_outlook
 from ocean_tweak.core.sea.foam_levels import FoamLevels
 from ocean_tweak.core.sea.patch_plan import Wish, planned
-from ocean_tweak.core.sea.spray import CameraSpray, SprayError, TileSpray, check_spray, why_none
+from ocean_tweak.core.sea.spray import CameraSpray, TileSpray
+from ocean_tweak.core.sea.spray_outlook import SprayError, check_spray, why_none
 from ocean_tweak.core.sea.spray_squares import Square, outside, squares
 from ocean_tweak.core.spray import drops
 from ocean_tweak.core.spray.flight import Flight
@@ -266,7 +268,7 @@ def test_a_sea_without_spray_says_why(sea: OceanParameters, reason: str) -> None
 def test_more_than_the_memory_holds_is_refused_with_what_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
     maker = TileSpray(Ocean(_sea()))
     count = len(maker.at(_TIME, Spray()).age)
-    monkeypatch.setattr(sea_spray, "usable_memory", lambda: 300 * count)  # of which half may be taken
+    monkeypatch.setattr(spray_outlook, "usable_memory", lambda: 300 * count)  # of which half may be taken
     with pytest.raises(SprayError, match="would do") as told:
         maker.at(_TIME, Spray(amount=2.0))
     would_do = float(str(told.value).partition("amount of ")[2].split()[0])
@@ -355,7 +357,8 @@ def test_memory_is_asked_for_as_many_squares_as_there_are(monkeypatch: pytest.Mo
     patches = (Patch(40.0, 0.3, 1.5, 1e6, 128), Patch(11.0, 0.9, 0.5, 1.5, 128))
     sea = OceanParameters(seed=2, layers=(WaveLayer(wind_speed=22.0, fetch=3e3),), patches=patches)
     counts: list[float] = []
-    monkeypatch.setattr(sea_spray, "_check_memory", lambda count, spray: counts.append(count))
+    for module in (sea_spray, spray_outlook):
+        monkeypatch.setattr(module, "check_spray_memory", lambda count, spray: counts.append(count))
     assert len(squares(FoamLevels(sea), (0.0, 0.0))) < 5
     check_spray(sea, Spray(life=0.5))
     CameraSpray(FoamLevels(sea)).at(_TIME, Spray(life=0.5), (0.0, 0.0))

@@ -18,33 +18,30 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..data.errors import ParameterError
 from ..foam.model import FoamModel, breaking_of
-from ..foam.threshold import foam_outlook, foam_wind
 from ..numerics import random
-from ..numerics.machine import usable_memory
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import open_sea
 from ..parameters.spray import Spray
-from ..spray.drops import LEAST_WIND, torn_rate
-from ..spray.particles import BYTES, Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
-from ..waves.contribution import Wind
+from ..spray.drops import torn_rate
+from ..spray.particles import Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
 from .coast_waves import CoastWaves
 from .foam_levels import FoamLevels
 from .hull_motion import HullMotion
 from .memory import ground_of
 from .ocean import Ocean
-from .placed_waves import check_repeats, has_tile, is_seen_around, makes_foam, own_spray, stronger, throws
+from .placed_waves import own_spray, stronger, throws
 from .regions import TILE, Places
-from .spray_squares import STANDS_FOR, Square, area_of_squares, outside, squares
+from .spray_outlook import check_spray_memory, tearing_wind, why_none
+from .spray_squares import STANDS_FOR, Square, outside, squares
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
 #: largest size in m of the parts into which a breaking cell is divided, if these are few
 _PART, _MOST_CUTS = 1.0, 4
-#: strength at which a breaking crest is torn completely, and the torn area relative to the mean strength
-_ALL_TEARS, _TEARS = 0.25, 1.7
+#: strength at which a breaking crest is torn completely
+_ALL_TEARS = 0.25
 #: particles per second and m² where what a hull throws up has a strength of 1
 _OF_A_CREST = torn_rate(17.0)
 #: extent of a gust in m and in moments
@@ -52,74 +49,6 @@ _GUST, _GUST_MOMENTS = 2.0, 2
 
 #: fields needed for the motion of breaking water
 _OF_WATER = frozenset({"displacement", "velocity", "slope", "strain"})
-#: fraction of the machine's memory that spray may use
-_SHARE_OF_MEMORY = 0.5
-
-
-class SprayError(ParameterError):
-    """More particles than fit into memory; the message has an amount that fits."""
-
-
-def why_none(parameters: OceanParameters) -> str | None:
-    """Why a sea has no spray; None if it has."""
-    if makes_foam(parameters) or breaks_ashore(parameters):  # bows and breakers throw up water in any wind
-        return None
-    wind = foam_wind(parameters)
-    if wind is None:
-        return (
-            "this sea has no spray, because no layer is given by a wind: define one by wind speed and fetch"
-        )
-    if foam_outlook(parameters).coverage == 0.0:
-        return "this sea has no spray, because it has no foam: give its foam a coverage above 0"
-    if wind.speed <= LEAST_WIND:
-        return (
-            f"this sea has no spray, because its wind of {wind.speed:.3g} m/s tears nothing off: "
-            f"spume begins at {LEAST_WIND:g} m/s"
-        )
-    return None
-
-
-def breaks_ashore(parameters: OceanParameters) -> bool:
-    """Whether waves break over the bed of a sea's coast."""
-    return parameters.coast is not None and parameters.has_coast and parameters.coast.breaking
-
-
-def is_around(parameters: OceanParameters) -> bool:
-    """Whether a sea's spray is made around a camera, not on its tile."""
-    return is_seen_around(parameters) or parameters.has_coast
-
-
-def check_spray(parameters: OceanParameters, spray: Spray) -> None:
-    """Raise SprayError, before computing any, if a sea's spray needs too much memory.
-
-    Raises ParameterError for a sea without spray, and for one that has neither a tile nor is seen around a
-    camera.
-    """
-    if (why := why_none(parameters)) is not None:
-        raise ParameterError("spray", "", why)
-    if not is_around(parameters):
-        try:
-            check_repeats(parameters)
-        except ParameterError as error:
-            reason = f"is made on the tile of a sea without patches, and with {error.field} this one has none"
-            raise ParameterError("spray", "", f"{reason}: leave it out, or give the sea patches") from None
-    _check_memory(expected_count(parameters, spray), spray)
-
-
-def expected_count(parameters: OceanParameters, spray: Spray) -> float:
-    """Expected number of particles at any time that wind tears off, on the tile or around a place."""
-    rate = torn_rate(_wind(parameters).speed)
-    if rate == 0.0 or why_none(parameters) is not None:
-        return 0.0
-    parameters = open_sea(parameters)
-    area = parameters.domain_size**2 if has_tile(parameters) else area_of_squares(FoamLevels(parameters))
-    tears = _TEARS * Ocean(parameters).mean_breaking
-    return area * tears * rate * spray.amount * mean_life(spray)
-
-
-def _wind(parameters: OceanParameters) -> Wind:
-    """That which tears crests and carries spray; none where no layer has any."""
-    return foam_wind(parameters) or Wind(0.0, 0.0)
 
 
 class TileSpray:
@@ -152,7 +81,7 @@ class TileSpray:
         foam = self._foam
         n, side, model = foam.parameters.resolution, foam.parameters.domain_size, foam.foam_model
         fields = foam.surface(model.reduced(index * model.step), {*_OF_WATER, "min_eigenvalue"}, TILE)
-        rate = torn_rate(_wind(foam.parameters).speed)
+        rate = torn_rate(tearing_wind(foam.parameters).speed)
         strength = breaking_of(model, np.subtract(1.0, fields.min_eigenvalue))
         row, column = np.nonzero(strength)
         water = _Water(*(fields[name][row, column].astype(np.float64) for name in _Water._fields))
@@ -213,7 +142,7 @@ class CameraSpray:
         rest = [np.stack((cells.column + 0.5, cells.row + 0.5), axis=-1) * cells.size for cells, _ in found]
         x, y = np.concatenate(rest).T
         water = _water(finest, x, y, time, coast)
-        rate = torn_rate(_wind(finest.parameters).speed)
+        rate = torn_rate(tearing_wind(finest.parameters).speed)
         births = rate * np.concatenate([_torn(strength) for _, strength in found])
         height, velocity = water.displacement[:, 2], water.velocity
         if self._hulls is None:
@@ -300,14 +229,14 @@ class _Remembered:
         """
         if why_none(self._parameters) is not None:
             return joined([])
-        wind = _wind(self._parameters)
+        wind = tearing_wind(self._parameters)
         now, step = Fraction(time), model.step
         first = math.floor((now - Fraction(longest_life(spray))) / step - Fraction(1, 2))
         moments = range(first, math.floor(now / step + Fraction(1, 2)) + 1)
         with self._busy:
             crests = self._looked_at(moments, around, look)
         torn = _in_the_air([each for _, each in crests], spray, float(step))
-        _check_memory(torn / len(moments), spray)
+        check_spray_memory(torn / len(moments), spray)
         parts = (
             in_the_air(each, spray, wind, float(step), float(now - index * step)) for index, each in crests
         )
@@ -382,7 +311,7 @@ def _broken(sea: Ocean, square: Square, time: Fraction, coast: CoastWaves | None
     column, row = square.cells()
     x, y = ((number.astype(np.float64) + 0.5) * size for number in (column, row))
     strength: RealArray = np.zeros(x.shape, np.float32)
-    if torn_rate(_wind(sea.parameters).speed) > 0.0:
+    if torn_rate(tearing_wind(sea.parameters).speed) > 0.0:
         strength = breaking_of(sea.foam_model, sea.compression_at(x, y, time))
     thrown = throws(sea.parameters, x, y, time)
     if coast is not None:
@@ -449,16 +378,3 @@ def _torn(strength: RealArray) -> RealArray:
 def _in_the_air(crests: Sequence[Crests], spray: Spray, step: float) -> float:
     """Expected particles in the air, where such crests break in each moment of `step` seconds."""
     return sum(float(expected(each, spray, step).sum()) for each in crests) / step * mean_life(spray)
-
-
-def _check_memory(count: float, spray: Spray) -> None:
-    """Raise SprayError for more particles than the memory holds."""
-    memory = usable_memory()
-    if memory is None or count * BYTES <= _SHARE_OF_MEMORY * memory:
-        return
-    would_do = spray.amount * _SHARE_OF_MEMORY * memory / (count * BYTES)
-    raise SprayError(
-        "spray.amount", spray.amount,
-        f"makes about {count:,.0f} particles, which need {count * BYTES / 2**30:.1f} GB of memory, and spray "
-        f"may take {_SHARE_OF_MEMORY * memory / 2**30:.1f} GB here: an amount of {would_do:.2g} would do",
-    )  # fmt: skip

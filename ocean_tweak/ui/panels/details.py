@@ -3,7 +3,7 @@
 
 import bpy
 
-from ...core.sea.spray import why_none
+from ...core.sea.spray_outlook import why_none
 from ...scene.refresh import sea_of_settings
 from ...scene.spray import too_few_bounces
 from .. import camera_operators, material_operators, parameter_operators
