@@ -54,6 +54,13 @@ DRY = _note(
     "because the Ocean Tweak extension does not run here and the bake has none: enable the extension, or "
     "bake the ocean again",
 )
+#: an ocean around a camera, whose bakes leave out what bows and a coast's breakers throw up
+NO_BOWS = _note(
+    "Ocean Tweak No Bows",
+    "There is no spray of bows and of breakers on a coast as in frame",
+    "because the Ocean Tweak extension does not run here and no bake around a camera has it: enable the "
+    "extension and press Back to Live",
+)
 #: the carrier of what drifts with a current
 DRIFTLESS = _note(
     "Ocean Tweak Driftless",

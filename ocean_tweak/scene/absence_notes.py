@@ -8,24 +8,28 @@ from __future__ import annotations
 
 import bpy
 
-from ..nodes.held import DRIFTLESS, DRY
+from ..nodes.held import DRIFTLESS, DRY, NO_BOWS
 from ..nodes.versioned import is_of_kind
 from . import float_current, held_sea, spray
+from .baked_spray import left_out
 from .settings import settings_of, shown_oceans
 
-_KINDS = (DRY, DRIFTLESS)
+_KINDS = (DRY, NO_BOWS, DRIFTLESS)
 
 
 def write() -> None:
     """Put them into the file that is about to be saved."""
     baked = [
-        (ocean, scene.frame_current)
+        (ocean, scene)
         for ocean, scene in shown_oceans().items()
         if settings_of(ocean).source != "LIVE" and ocean.library is None
     ]
-    for ocean, frame in baked:
-        if spray.is_live(ocean):
+    for ocean, scene in baked:
+        frame = scene.frame_current
+        if spray.waits_for_bake(ocean, scene):
             held_sea.tell(ocean, DRY, frame)
+        if any(left_out(ocean, scene)):
+            held_sea.tell(ocean, NO_BOWS, frame)
         for carrier in float_current.carriers_in_current(ocean):
             held_sea.tell(carrier, DRIFTLESS, frame)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,8 +16,8 @@ from ..core.data.errors import ParameterError
 from ..core.data.plain_data import from_plain, to_plain
 from ..core.data.printable import without_exponent
 from ..core.parameters.spray import Spray
-from ..core.sea.placed_waves import repeating
-from ..core.sea.spray_outlook import why_none
+from ..core.sea.placed_waves import makes_foam, repeating
+from ..core.sea.spray_outlook import breaks_ashore, why_none
 from ..core.spray.columns import COLUMNS
 from ..export.frame_files import SPRAY, files_start
 from ..export.ply import told_by_ply
@@ -89,6 +90,20 @@ def spray_to_bake(ocean: bpy.types.Object, scene: bpy.types.Scene) -> WantedSpra
     if parameters.spray is None or why_none(parameters) is not None:
         return None
     return WantedSpray(parameters.spray, bake_place(ocean, scene))
+
+
+def left_out(ocean: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[tuple[str, str]]:
+    """What throws up spray of an ocean around a camera and is in no bake of it, each with a remedy."""
+    if camera_surface_of(ocean) is None or not settings_of(ocean).use_spray:
+        return
+    try:
+        parameters = settings_of(ocean).to_parameters(scene)
+    except ParameterError:
+        return  # the ocean tells
+    if makes_foam(parameters):
+        yield "bows", "press Back to Live, or mute their layers"
+    if breaks_ashore(parameters):
+        yield "breakers on the coast", "press Back to Live, or remove the camera surface and bake again"
 
 
 def spray_arguments(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str]:

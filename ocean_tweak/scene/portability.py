@@ -14,9 +14,10 @@ import bpy
 
 from ..nodes.modifier_inputs import reads
 from . import coast_surface, float_carrier, float_current, patch_objects, spray
+from .baked_spray import left_out
 from .cache_place import shown_bake
 from .plan import camera_surface_of
-from .settings import all_oceans, is_ocean, oceans_in, settings_of, was_ocean
+from .settings import all_oceans, is_ocean, oceans_in, settings_of, shown_oceans, was_ocean
 
 
 class Need(NamedTuple):
@@ -194,8 +195,13 @@ def _coast_around_camera(ocean: bpy.types.Object, surface: bpy.types.Object | No
 
 
 def _dry(ocean: bpy.types.Object) -> Iterator[Need]:
-    if spray.is_live(ocean):
+    scene = shown_oceans().get(ocean)
+    if scene is None:
+        return
+    if spray.waits_for_bake(ocean, scene):
         yield Need(ocean.name, "has spray, which its bake has not", "bake it again")
+    for what, remedy in left_out(ocean, scene):
+        yield Need(ocean.name, f"has spray of {what}, which no bake around a camera has", remedy)
 
 
 def _drifting(ocean: bpy.types.Object) -> Iterator[Need]:

@@ -15,6 +15,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.data.errors import ParameterError
 from ..core.data.frames import held_frame
 from ..core.parameters.spray import Spray
 from ..core.sea.spray_outlook import why_none
@@ -26,7 +27,7 @@ from ..nodes.spray import FILES, SPRAY
 from ..nodes.spray_look import SPRAY_LOOK
 from ..nodes.versioned import is_of_kind, lay_out, node_group
 from . import failures, held_sea, water_material
-from .baked_spray import BakedSpray, baked_spray
+from .baked_spray import BakedSpray, baked_spray, left_out, spray_to_bake
 from .image_sequence import baked_stretch, shown_frame
 from .live_spray import IN_WINDOW, wanted
 from .ownership import remove_with_meshes
@@ -190,6 +191,14 @@ def is_live(ocean: bpy.types.Object) -> bool:
     return spray_of(ocean) is not None and baked_spray(settings_of(ocean)) is None
 
 
+def waits_for_bake(ocean: bpy.types.Object, scene: bpy.types.Scene) -> bool:
+    """Whether an ocean has spray that no files show, and another bake would write some."""
+    try:
+        return is_live(ocean) and spray_to_bake(ocean, scene) is not None
+    except ParameterError:
+        return False  # the ocean tells
+
+
 def note_files(ocean: bpy.types.Object, scene: bpy.types.Scene) -> None:
     """Let the console hear that the present frame has no file of spray, so that that of another is shown, or
     that files are of an older bake."""
@@ -199,6 +208,8 @@ def note_files(ocean: bpy.types.Object, scene: bpy.types.Scene) -> None:
         return
     if (text := baked.differs(settings.to_parameters(scene).spray)) is not None:
         failures.warned(ocean, "spray bake", f"{text}: bake it again to see yours")
+    for what, remedy in left_out(ocean, scene):
+        failures.warned(ocean, f"spray of {what}", f"the baked spray has none of {what}: {remedy}")
     frame = shown_frame(settings, scene, scene.frame_current)
     if frame not in baked.frames:
         held = held_frame(baked.frames, frame)

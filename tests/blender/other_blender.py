@@ -2,7 +2,7 @@
 """Opens a file in a Blender that has not the extension and keeps what it shows: a script of its own.
 
 FILE.blend OUT.npz NAMES FRAMES: of each of these objects, vertices and warnings at each frame, in the
-viewport and in a render.
+viewport and, where it is rendered, in a render.
 """
 
 import json
@@ -98,8 +98,7 @@ def main(blend, out, names, frames):
                         for warning in each.node_warnings]  # fmt: skip
             kept[f"{name} warnings {frame}"] = np.array(warnings, dtype=str)
         bpy.ops.render.render()
-        for name in json.loads(names):
-            kept[f"{name} render {frame}"] = meshes[name]
+        kept |= {f"{name} render {frame}": meshes[name] for name in json.loads(names) if name in meshes}
     np.savez(out, **kept)
     bpy.utils.unregister_class(Probe)  # bpy 4.5 hangs at the end of a process that leaves one behind
 

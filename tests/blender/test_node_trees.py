@@ -42,6 +42,7 @@ KINDS = {
     "wet-bed": ("nodes.wet_bed", lambda module: module.WET_BED),
     "area": ("nodes.held", lambda module: module.AREA),
     "dry": ("nodes.held", lambda module: module.DRY),
+    "no-bows": ("nodes.held", lambda module: module.NO_BOWS),
     "driftless": ("nodes.held", lambda module: module.DRIFTLESS),
     "grid-facts": ("nodes.rest_grid", lambda module: module.GRID_FACTS),
     "cell": ("nodes.rest_grid", lambda module: module.CELL),
