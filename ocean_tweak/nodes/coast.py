@@ -10,6 +10,7 @@ import bpy
 from ..core.synthesis.channels import CHANNELS
 from .building import Builder, Plug, Socket, output
 from .extension_check import INPUTS as ABSENCE_INPUTS
+from .extension_check import LIVE_REMEDY
 from .fields import combined, named_attribute, sample_index
 from .frame_warnings import WARNINGS
 from .held import held_still
@@ -36,16 +37,12 @@ _INPUTS = (
     *ABSENCE_INPUTS,
 )  # fmt: skip
 _NUMBERS = (FOAM, CUSP, BREAKING, FOAM_AGE)
-_REMEDY = (
-    "because it is live and the Ocean Tweak extension does not run here: enable the extension, or bake the "
-    "ocean"
-)
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, _INPUTS)
     geometry = build.given("Geometry")
-    live = held_still(build, geometry, "The coast stands still as it was in frame", _REMEDY)
+    live = held_still(build, geometry, "The coast stands still as it was in frame", LIVE_REMEDY)
     is_baked = is_given(build, build.given(FILES))
     build.finish(build.switch("GEOMETRY", is_baked, live, _moved(build, geometry)))
 

@@ -19,7 +19,8 @@ _BEACON = ".Ocean Tweak Runs"
 _NODE = "Beacon"
 _LINE = "Ocean Tweak: live oceans stand still, as the extension does not run here; enable it, or bake them"
 _STATE = "The sea stands still as it was in frame"
-_REMEDY = (
+#: the end of what is said of what is live
+LIVE_REMEDY = (
     "because it is live and the Ocean Tweak extension does not run here: enable the extension, or bake the "
     "ocean"
 )
@@ -34,7 +35,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(
         tree, INPUTS, (Plug("Is Absent", "NodeSocketBool", None, "Nothing will move a live sea"),)
     )
-    build.finish_with({"Is Absent": is_absent(build, _STATE, _REMEDY)})
+    build.finish_with({"Is Absent": is_absent(build, _STATE, LIVE_REMEDY)})
 
 
 def is_absent(build: Builder, state: str, remedy: str) -> Socket:

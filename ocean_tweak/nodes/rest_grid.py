@@ -21,13 +21,24 @@ GEOMETRY = Plug("Geometry", "NodeSocketGeometry", None, "An ocean's evaluated me
 COLUMNS = Plug("Columns", "NodeSocketInt", 2, "Vertices along x")
 ROWS = Plug("Rows", "NodeSocketInt", 2, "Vertices along y")
 
-
 _GRID_OUTPUTS = (
     Plug("Geometry", "NodeSocketGeometry", None, "The same mesh, or nothing where it is no ocean's"),
     Plug("Corner", "NodeSocketVector", None, "First vertex at rest; 0 where the mesh is no ocean's"),
     Plug("Spacing", "NodeSocketVector", None, "Size of a cell; (1, 1, 1) where the mesh is no ocean's"),
     COLUMNS,
     ROWS,
+)
+_CELL_INPUTS = (
+    GEOMETRY,
+    Plug("Value", "NodeSocketVector", None, "What to look up on the mesh"),
+    Plug("Place", "NodeSocketVector", None, "At rest, in cells from the first vertex"),
+    COLUMNS,
+    ROWS,
+)
+_CELL_OUTPUTS = (
+    Plug("Value", "NodeSocketVector", None, "Bilinear between the four vertices around"),
+    Plug("Along X", "NodeSocketVector", None, "Its change along x, per cell"),
+    Plug("Along Y", "NodeSocketVector", None, "Its change along y, per cell"),
 )
 
 
@@ -99,21 +110,7 @@ def _is_short(build: Builder, off: Socket, step: Socket) -> Socket:
 
 
 def _build_cell(tree: bpy.types.NodeTree) -> None:
-    build = Builder(
-        tree,
-        (
-            GEOMETRY,
-            Plug("Value", "NodeSocketVector", None, "What to look up on the mesh"),
-            Plug("Place", "NodeSocketVector", None, "At rest, in cells from the first vertex"),
-            COLUMNS,
-            ROWS,
-        ),
-        (
-            Plug("Value", "NodeSocketVector", None, "Bilinear between the four vertices around"),
-            Plug("Along X", "NodeSocketVector", None, "Its change along x, per cell"),
-            Plug("Along Y", "NodeSocketVector", None, "Its change along y, per cell"),
-        ),
-    )
+    build = Builder(tree, _CELL_INPUTS, _CELL_OUTPUTS)
     place = build.given("Place")
     x, y, _ = coordinates(build, place)
     part_x, part_y, _ = coordinates(build, alone(build, "FRACTION", place))

@@ -22,24 +22,23 @@ LONGEST_STEP = 2.0
 #: smallest determinant of the map from rest position to surface used in a step
 LEAST_DETERMINANT = 0.05
 
+_INPUTS = (
+    GEOMETRY,
+    Plug("Position", "NodeSocketVector", None, "Where to look, in the ocean's space"),
+    Plug("At Rest", "NodeSocketBool", False, "The position is that of the water at rest"),
+)
+_OUTPUTS = (
+    Plug("Point", "NodeSocketVector", None, "On the surface"),
+    Plug("Displacement", "NodeSocketVector", None, "Of the water that is there"),
+    Plug("Along X", "NodeSocketVector", None, "A tangent of the surface"),
+    Plug("Along Y", "NodeSocketVector", None, "A tangent of the surface"),
+    Plug("Foam", "NodeSocketFloat", None, "0 to 1"),
+    Plug("Velocity", "NodeSocketVector", None, "Of the water, per second"),
+)
+
 
 def _build_surface(tree: bpy.types.NodeTree) -> None:
-    build = Builder(
-        tree,
-        (
-            GEOMETRY,
-            Plug("Position", "NodeSocketVector", None, "Where to look, in the ocean's space"),
-            Plug("At Rest", "NodeSocketBool", False, "The position is that of the water at rest"),
-        ),
-        (
-            Plug("Point", "NodeSocketVector", None, "On the surface"),
-            Plug("Displacement", "NodeSocketVector", None, "Of the water that is there"),
-            Plug("Along X", "NodeSocketVector", None, "A tangent of the surface"),
-            Plug("Along Y", "NodeSocketVector", None, "A tangent of the surface"),
-            Plug("Foam", "NodeSocketFloat", None, "0 to 1"),
-            Plug("Velocity", "NodeSocketVector", None, "Of the water, per second"),
-        ),
-    )
+    build = Builder(tree, _INPUTS, _OUTPUTS)
     facts = build.group(node_group(GRID_FACTS), {"Geometry": build.given("Geometry")})
     wanted = _place(build, facts)
     steps = build.switch("INT", build.given("At Rest"), STEPS, 0)

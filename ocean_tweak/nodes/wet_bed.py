@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 
 from .building import Builder, Plug, Socket, output
-from .fields import sample_index, whole_number
+from .fields import coordinates, sample_index, whole_number
 from .names import WET
 from .point_files import column, point_file
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
@@ -33,10 +33,10 @@ def _build(tree: bpy.types.NodeTree) -> None:
     frame = build.group(node_group(SHOWN_FRAME), {name: build.given(name) for name, *_ in FRAME_INPUTS})
     points = point_file(build, build.given(FILES), output(frame, "Frame"))
     place = output(build.add("GeometryNodeInputPosition"), "Position")
-    origin = build.add("ShaderNodeSeparateXYZ", {"Vector": build.given("Origin")})
+    first_row, first_number, _ = coordinates(build, build.given("Origin"))
     row, number = (
-        build.math("ADD", _along(build, place, build.given(name)), output(origin, axis))
-        for name, axis in (("Row", "X"), ("Column", "Y"))
+        build.math("ADD", build.vector("DOT_PRODUCT", place, build.given(name)), first)
+        for name, first in (("Row", first_row), ("Column", first_number))
     )
     last = build.integer("SUBTRACT", build.given("Lines"), 1)
     row = build.math("MINIMUM", build.math("MAXIMUM", row, 0.0), last)
@@ -57,13 +57,6 @@ def _build(tree: bpy.types.NodeTree) -> None:
     count = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": points}), "Point Count")
     written = build.store(geometry, WET, wet, "FLOAT")
     build.finish(build.switch("GEOMETRY", build.compare("GREATER_THAN", count, 0), geometry, written))
-
-
-def _along(build: Builder, place: Socket, way: Socket) -> Socket:
-    node = build.add("ShaderNodeVectorMath", operation="DOT_PRODUCT")
-    for socket, value in zip(node.inputs, (place, way), strict=False):
-        build.tree.links.new(value, socket)
-    return output(node, "Value")
 
 
 def _between(build: Builder, first: Socket, second: Socket, share: Socket) -> Socket:

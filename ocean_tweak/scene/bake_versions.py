@@ -74,10 +74,8 @@ def foresee(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     Raises ParameterError for settings that are no sea, OSError.
     """
     frames = scene_frames(scene)
-    shot, maps = (
-        bake_shot_of(item, scene, frames),
-        (*maps_of(wanted_channels(settings_of(item))), *needed_maps(item)),
-    )
+    shot = bake_shot_of(item, scene, frames)
+    maps = (*maps_of(wanted_channels(settings_of(item))), *needed_maps(item))
     job = Job(bake_name(item), own_uid(item), shot, maps, frames=frames)
     place = cache_folder(item)
     while not place.is_dir() and place != place.parent:

@@ -63,18 +63,18 @@ def tell(item: bpy.types.Object, kind: GroupKind, frame: int) -> None:
 
 def say_nothing(item: bpy.types.Object, kind: GroupKind) -> None:
     """Let a linked object say nothing: its group cannot know that the extension runs. This is not saved."""
-    for modifier in _own_modifiers(item, kind):
+    for modifier in _modifiers_of(item, kind):
         set_inputs(modifier, {"Live": False})
 
 
-def _own_modifiers(item: bpy.types.Object, kind: GroupKind) -> list[bpy.types.Modifier]:
+def _modifiers_of(item: bpy.types.Object, kind: GroupKind) -> list[bpy.types.Modifier]:
     return [each for each in item.modifiers if each.type == "NODES" and is_of_kind(each.node_group, kind)]
 
 
 def modifier_of(item: bpy.types.Object, kind: GroupKind) -> bpy.types.Modifier:
     """The modifier of a kind, made where there is none. In an override that of the library is replaced, as
     its group is linked."""
-    found = _own_modifiers(item, kind)
+    found = _modifiers_of(item, kind)
     for modifier in found:
         if is_of_library(modifier):
             set_changed(modifier, show_viewport=False, show_render=False)

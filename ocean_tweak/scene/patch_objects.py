@@ -259,8 +259,8 @@ def _fill(wanted: Iterable[_Filling], plan: Plan) -> None:
         for each, sea, fields in zip(lacking, seas, made, strict=True):
             lost = 0.0 if each.is_coarse else _lost(each, sea)
             grid = Grid(each.patch.domain_size * plan.scale, each.samples, each.samples)
-            in_units = {name: _in_units(CHANNELS[name], field, plan) for name, field in fields.items()}
-            patch_averages.write_patch(each.mesh, grid, in_units, lost)
+            scaled = {name: _in_units(CHANNELS[name], field, plan) for name, field in fields.items()}
+            patch_averages.write_patch(each.mesh, grid, scaled, lost)
             _shown[each.mesh.session_uid] = (moment, *each[1:])
 
 
