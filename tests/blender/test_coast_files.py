@@ -8,11 +8,11 @@ import bpy
 import numpy as np
 import pytest
 
-from . import test_coast
+from . import coasts
+from .coasts import fine_slope, values
 from .other_blender import look, run_script
-from .test_coast import slope, values
 
-calm, ocean, coast_of = test_coast.calm, test_coast.ocean, test_coast.coast_of
+calm, ocean, coast_of = coasts.calm, coasts.ocean, coasts.coast_of
 NAMES = ("displacement", "velocity", "foam", "breaking", "foam_age", "cusp")
 
 
@@ -30,12 +30,7 @@ def saved(ocean, tmp_path, monkeypatch):
 @pytest.fixture
 def bed(ocean):
     """A fine one, turned and moved against the ocean, which is so too."""
-    bed = slope()
-    bpy.context.view_layer.objects.active = bed
-    modifier = bed.modifiers.new("Fine", "SUBSURF")
-    modifier.subdivision_type, modifier.levels = "SIMPLE", 6
-    bpy.ops.object.modifier_apply(modifier=modifier.name)
-    bpy.context.view_layer.objects.active = ocean
+    bed = fine_slope()
     ocean.location = bed.location = (20.0, -30.0, 1.0)
     ocean.rotation_euler.z = bed.rotation_euler.z = 0.4
     bpy.context.view_layer.update()

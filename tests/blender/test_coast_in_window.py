@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 
-from .test_coast import calm, coast_of, ocean, slope, values  # noqa: F401 - fixtures
+from .coasts import calm, coast_of, ocean, slope, values  # noqa: F401 - fixtures
 from .test_refinement import refinement, run_until  # noqa: F401 - a fixture
 
 

@@ -5,15 +5,15 @@ import bpy
 import numpy as np
 import pytest
 
-from . import floats, test_coast
+from . import coasts, floats
 from .camera_views import numbers
+from .coasts import SIDE, slope
 from .conftest import evaluated_mesh
-from .test_coast import SIDE, slope
 from .test_sample import answers, new_asker
 from .test_wakes import key, new_hull
 
 # fixtures for every test here
-calm, coast_of, select = test_coast.calm, test_coast.coast_of, floats.select
+calm, coast_of, select = coasts.calm, coasts.coast_of, floats.select
 
 FRAME = 30
 
@@ -138,6 +138,24 @@ def test_ocean_sample_sees_the_sea_over_the_bed(ocean, core, extension, empty_sc
         over = (x.ravel() > 20.0) & (x.ravel() < 170.0)
         steep = (found["Normal"] - expected.normal)[over]
         assert np.sqrt(np.mean(steep**2)) < 1e-3
+
+
+@pytest.mark.parametrize("ocean", [False], indirect=True, ids=["one patch"])
+def test_ocean_sample_sees_it_in_other_units(ocean, core, extension, empty_scene):
+    unit = empty_scene.unit_settings.scale_length = 0.5  # m
+    bpy.context.view_layer.update()
+    empty_scene.frame_set(FRAME)
+    whole, time = sea(core, ocean)
+    side = whole.parameters.domain_size
+    x, y = (
+        axis.ravel() for axis in np.meshgrid(np.linspace(-0.6, 0.9, 61) * side, np.array((0.2, 0.7)) * side)
+    )
+    points = np.stack((x, y, np.zeros(x.size)), axis=-1) / unit
+    found = answers(evaluated_mesh(new_asker(extension, empty_scene, points, ocean, False)))
+    expected = whole.points_at(x, y, time)
+    assert np.ptp(expected.height) > 0.2
+    np.testing.assert_allclose(unit * found["Height"].ravel(), expected.height, atol=6e-3)
+    assert np.sqrt(np.mean((found["Normal"] - expected.normal) ** 2)) < 2e-3
 
 
 @pytest.mark.parametrize("ocean", [False], indirect=True, ids=["one patch"])
