@@ -13,14 +13,9 @@ import pytest
 from ocean_tweak.cli import main
 from ocean_tweak.core import (
     Area,
-    Coast,
     Ocean,
-    OceanParameters,
     ParameterError,
     Places,
-    Raster,
-    Water,
-    WaveLayer,
 )
 from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.core.sea.bake import ShotSeas
@@ -31,14 +26,8 @@ from ocean_tweak.export.coast_points import COLUMNS
 from ocean_tweak.export.exr import read_image
 from ocean_tweak.export.ply import read_ply
 from tests.batch.bakery import only_folder
-
-#: from 12 m of water to 1 m of land, over 200 m
-BED = np.repeat(np.linspace(12.0, -1.0, 51)[np.newaxis], 51, axis=0)
-SEA = OceanParameters(
-    resolution=32, domain_size=200.0, water=Water(depth=20.0),
-    layers=(WaveLayer(wind_speed=9.0, fetch=60e3),),
-    coast=Coast(depth=Raster(BED, "bed"), spacing=4.0, rim=80.0, shortest_wavelength=40.0),
-)  # fmt: skip
+from tests.coasts import BEACH, SIDE
+from tests.coasts import SMALL_SEA as SEA
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +67,7 @@ def test_points_are_the_sea_and_the_tile_is_the_open_one(baked: Path) -> None:
 
 def test_sand_is_wet_on_land_and_foam_is_where_it_is_shallow(baked: Path) -> None:
     points = read_ply(baked / "sea_coast.0005.ply", (COLUMNS,))
-    depth = np.interp(points["x"], np.linspace(0.0, 200.0, 51), BED[0])
+    depth = np.interp(points["x"], np.linspace(0.0, SIDE, 101), BEACH[0])
     assert (points["wet"][depth > 0.5] == 1.0).all()
     on_land = points["wet"][depth < 0.0]
     assert on_land.min() == 0.0

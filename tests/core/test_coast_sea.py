@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
@@ -13,7 +12,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from ocean_tweak.core import (
     Area,
-    Coast,
     Current,
     Mask,
     Ocean,
@@ -24,43 +22,21 @@ from ocean_tweak.core import (
     Places,
     Raster,
     WakeLayer,
-    Water,
     WaveLayer,
 )
 from ocean_tweak.core.foam.model import Whitecaps
 from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.parameters.patch_seas import open_sea
 from ocean_tweak.core.parameters.shot import Animation, Shot
-from ocean_tweak.core.sea import coast_pictures, coast_waves
 from ocean_tweak.core.sea.coast_outlook import coast_outlook
 from ocean_tweak.core.sea.over_bed import with_whitecaps
 from ocean_tweak.core.waves.coast.beds import BEDS, SPACING, grid
 from ocean_tweak.core.waves.coast.breakers import broken_share
 from ocean_tweak.core.waves.coast.parameters import repeats_after
+from tests.coasts import BEACH, DEEP, SAMPLES, SIDE, sea
 
-SIDE, SAMPLES, DEEP = 200.0, 64, 20.0
 STEP = SIDE / SAMPLES
-#: a beach of 200 m from 12 m of water to land, along +x
-BEACH = np.repeat(np.linspace(12.0, -1.0, 101)[np.newaxis], 101, axis=0)
 ALL = ("displacement", "slope", "velocity", "strain")
-
-
-def sea(bed: np.ndarray = BEACH, patches: tuple[Patch, ...] = (), **of_coast: object) -> OceanParameters:
-    coast = Coast(
-        **{
-            "depth": Raster(bed),
-            "spacing": 2.0,
-            "x": 0.0,
-            "rim": 40.0,
-            "shortest_wavelength": 35.0,
-            **of_coast,
-        }
-    )
-    size = {} if patches else {"resolution": SAMPLES, "domain_size": SIDE}
-    layer = WaveLayer(wind_speed=11.0, fetch=60e3, wind_direction=0.2)
-    return OceanParameters(
-        water=Water(depth=DEEP), coast=coast, layers=(layer,), seed=3, patches=patches, **size
-    )
 
 
 def height(parameters: OceanParameters) -> float:
@@ -345,90 +321,6 @@ def test_a_sea_in_single_precision_has_its_bytes_whatever_was_asked_in_double() 
     after = Ocean(parameters).surface(2.0, ALL, area)
     for name in ALL:
         assert_array_equal(after[name], alone[name])
-
-
-class Kept:
-    """A shelf in memory."""
-
-    def __init__(self) -> None:
-        self.held: dict[str, tuple[np.ndarray, ...]] = {}
-
-    def find(self, name: str) -> tuple[np.ndarray, ...] | None:
-        return self.held.get(name)
-
-    def keep(self, name: str, arrays: tuple[np.ndarray, ...]) -> None:
-        self.held[name] = arrays
-
-
-@pytest.fixture
-def shelf(monkeypatch: pytest.MonkeyPatch) -> Iterator[Kept]:
-    kept = Kept()
-    monkeypatch.setattr(MEMO, "shelf", kept)
-    MEMO.drop()
-    yield kept
-    MEMO.drop()  # what was made of changed pictures
-
-
-def shown(parameters: OceanParameters) -> np.ndarray:
-    x, y = np.meshgrid(np.arange(0.0, 180.0, 9.0), np.arange(0.0, 200.0, 20.0))
-    return Ocean(parameters).surface(3.0, on=Places(x, y)).displacement
-
-
-def test_pictures_that_are_kept_are_the_sea_s_and_are_not_made_again(
-    shelf: Kept, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    told: list[float] = []
-    made = Ocean(sea())
-    made.prepare(told.append)
-    assert told == sorted(told)
-    assert told[-1] == 1.0
-    assert len(told) > 20
-    expected = shown(sea())
-    MEMO.drop()
-    monkeypatch.setattr(coast_waves, "pictures", lambda *_: pytest.fail("they were made again"))
-    assert_array_equal(shown(sea()), expected)
-    # it is these that are shown
-    (name,) = shelf.held
-    numbers, elevation, potential = shelf.held[name]
-    shelf.held[name] = numbers, 2.0 * elevation, potential
-    MEMO.drop()
-    assert np.abs(shown(sea()) - expected).max() > 0.1
-
-
-@pytest.mark.parametrize(
-    "other",
-    [
-        {"rim": 41.0}, {"breaking": False}, {"mirror": 0.5}, {"step": 3.0},
-        {"shortest_wavelength": 40.0}, {"bed": BEACH + 0.1},
-        {"x": 2.0}, {"shore": "-X", "bed": BEACH[:, ::-1]},
-    ],
-)  # fmt: skip
-def test_pictures_are_kept_apart_by_all_that_they_follow_from(shelf: Kept, other: dict[str, object]) -> None:
-    assert len(fingerprints(sea(), sea(**other))) == 2
-
-
-def test_pictures_of_other_waves_are_kept_apart(shelf: Kept) -> None:
-    first = sea()
-    others = [
-        first.replace(**change)
-        for change in (
-            {"seed": 4}, {"water": Water(depth=21.0)}, {"water": Water(depth=DEEP, gravity=9.8)},
-            {"layers": (replace(first.layers[0], wind_speed=11.1),)}, {"loop_duration": 64},
-            {"orbital_motion": "FINITE_DEPTH"},
-        )
-    ]  # fmt: skip
-    assert len(fingerprints(first, *others)) == 1 + len(others)
-    # what acts after the waves are drawn
-    assert fingerprints(first, first.replace(choppiness=0.3)) == fingerprints(first)
-
-
-def fingerprints(*seas: OceanParameters) -> set[str]:
-    coasts = [Ocean(each).coast for each in seas]
-    return {
-        coast_pictures.fingerprint(each, coast.incoming, coast.ground)
-        for each, coast in zip(seas, coasts, strict=True)
-        if coast is not None
-    }
 
 
 def test_what_a_wall_mirrors_runs_out_to_the_open_sea_and_ends_there() -> None:

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from ocean_tweak.core import Area, Coast, Ocean, OceanParameters, Patch, Places, Raster, Water, WaveLayer
 from ocean_tweak.core.parameters.patch_seas import open_sea
 from ocean_tweak.core.sea.coast_pictures import Pictures
-from ocean_tweak.core.sea.coast_state import flow_over_bed
+from ocean_tweak.core.sea.coast_state import StateFields, flow_over_bed
 from ocean_tweak.core.waves.coast.ground import Ground
 
 DEEP, G = 15.0, 9.81
@@ -141,3 +141,25 @@ def test_a_tile_has_it_everywhere_and_any_time_has_the_same() -> None:
     assert np.ptp(tile.significant_height) == 0.0
     for name in STATE:
         np.testing.assert_array_equal(tile[name], later[name])
+
+
+def test_waves_of_a_millimetre_have_a_direction_too_and_no_waves_have_none() -> None:
+    small = 0.25e-3**2
+    flow = np.array([[0.6 * small, -0.8 * small], [0.0, 0.0]])
+    found = StateFields.of(np.array([small, 0.0]), np.zeros(2), flow)
+    assert_allclose(found.significant_height, [1e-3, 0.0])
+    assert_allclose(found.mean_direction, [[0.6, -0.8], [0.0, 0.0]])
+
+
+def test_waves_that_turn_too_far_between_samples_are_as_the_march_has_them() -> None:
+    """At most 1.2 rad from one sample to the next; half the square of the height runs on all the same."""
+    coast = Coast(depth=Raster(np.full((41, 41), DEEP)), spacing=5.0, rim=60.0, step=5.0)
+    ground = Ground.of(coast, 200.0, 64, 0.0, DEEP)
+    number, period = 196, 512.0
+    assert (2.0 * np.pi * number / period) ** 2 / G * ground.step > 2.0 * 1.2
+    wave = 0.5 * np.exp(1.2j * np.arange(ground.rows)[:, np.newaxis] * np.ones(ground.columns))
+    pictures = Pictures(
+        np.array([number]), wave.reshape(1, -1).astype(np.complex64), np.zeros((1, 0), np.complex64)
+    )
+    flow = flow_over_bed(pictures, ground, period, G)
+    assert_allclose(flow, np.broadcast_to([0.125, 0.0], flow.shape), atol=1e-6)

@@ -13,16 +13,19 @@ def test_a_turn_is_that_of_sine_and_cosine():
     assert_allclose(turned(angle), np.cos(angle) + 1j * np.sin(angle), atol=2e-15, rtol=0.0)
 
 
-@pytest.mark.parametrize(("highest", "is_all"), [(12.0, False), (90.0, True)])
-def test_the_series_is_the_exponential_of_the_whole_operator(highest, is_all):
+@pytest.mark.parametrize(
+    ("highest", "is_all", "reach", "rough"),
+    [(12.0, False, 0.3, 0.5), (90.0, True, 0.3, 0.5), (12.0, False, 0.8, 0.05)],
+)
+def test_the_series_is_the_exponential_of_the_whole_operator(highest, is_all, reach, rough):
     """Of δk·first + δk²·second made symmetric within the band, of a bed as rough as its samples."""
     rng, columns, dx = np.random.default_rng(2), 192, 0.5
     ky = np.fft.fftfreq(columns, 1.0 / columns)[np.newaxis] + 0.2
     band = Band(ky, highest)
     assert band.is_all == is_all
-    d = 0.5 * rng.standard_normal((1, columns))
+    d = rough * rng.standard_normal((1, columns))
     mean = 0.8 * highest
-    keep = np.exp(-((band.ky / (0.3 * highest)) ** 4))
+    keep = np.exp(-((band.ky / (reach * highest)) ** 4))
     first, second = 0.6 * keep * (band.ky / mean) ** 2, -0.4 * keep * (band.ky / mean) ** 2
     waves = rng.standard_normal(band.ky.shape) + 1j * rng.standard_normal(band.ky.shape)
     found = series(waves, band, d, first, second, dx)
@@ -40,3 +43,12 @@ def test_the_series_is_the_exponential_of_the_whole_operator(highest, is_all):
     whole = vector @ (np.exp(1j * dx * value) * (vector.conj().T @ band.whole(waves)[0]))
     expected = band.of(whole[np.newaxis])
     assert_allclose(found, expected, atol=3e-9 * np.abs(waves).max(), rtol=0.0)
+
+
+@pytest.mark.parametrize("offset", [-0.3, 0.0, 0.3])
+def test_a_band_has_all_waves_up_to_its_highest_and_gives_them_back(offset):
+    ky = np.fft.fftfreq(192, 1.0 / 192)[np.newaxis] + offset
+    band = Band(ky, 12.0)
+    assert np.count_nonzero(np.abs(band.ky) <= 12.0) == np.count_nonzero(np.abs(ky) <= 12.0)
+    back = band.whole(band.ky.astype(complex))
+    assert_allclose(back, np.where(np.isin(ky, band.ky), ky, 0.0))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
 import subprocess
@@ -17,7 +18,7 @@ from numpy.testing import assert_array_equal
 from ocean_tweak.core import ParameterError
 from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.export.python_process import environment
-from ocean_tweak.export.shelf import ArrayFiles, use_environment, use_folder
+from ocean_tweak.export.shelf import ArrayFiles, nothing_kept, use_cache, use_environment, use_folder
 
 ROOT = Path(__file__).parents[2]
 ARRAYS = (
@@ -25,6 +26,10 @@ ARRAYS = (
     (np.arange(12) + 1j * np.arange(12)[::-1]).astype(np.complex64).reshape(3, 4),
     np.zeros((0, 4), np.complex64),
 )
+
+
+#: as it is told of an array of no numbers
+NOTHING = {"shape": [0], "kind": "<i8", "sum": 0}
 
 
 @pytest.fixture
@@ -65,6 +70,10 @@ def changed(content: bytes, place: int) -> bytes:
         (lambda content: content.replace(b"[5]", b"[-5]"), "holds what no waves are"),
         (lambda content: content.replace(b"[5]", b"[500000000000]"), "instead of 4"),
         (lambda content: content.replace(b"[5]", b'["5"'), "does not say what it holds"),
+        (
+            lambda content: content[:21] + json.dumps([NOTHING] * 17).encode() + b"\n",
+            "holds what no waves are",
+        ),
     ],
 )
 def test_a_file_that_is_not_whole_or_not_ours_is_told_and_not_read(
@@ -155,7 +164,24 @@ def test_the_environment_names_the_folder_and_processes_inherit_it(
     monkeypatch.setenv("OCEAN_TWEAK_COASTS", str(tmp_path / "own"))
     use_environment(tmp_path / "of Blender")
     assert environment()["OCEAN_TWEAK_COASTS"] == str(tmp_path / "own")
+    use_cache(tmp_path / "of a bake")
+    assert environment()["OCEAN_TWEAK_COASTS"] == str(tmp_path / "own")
+    use_folder(None)
+    use_cache(tmp_path / "of a bake")
+    assert environment()["OCEAN_TWEAK_COASTS"] == str(tmp_path / "of a bake" / "coasts")
     if os.name != "nt":
         monkeypatch.setenv("OCEAN_TWEAK_COASTS", "C:\\coasts")
         with pytest.raises(ParameterError, match="OCEAN_TWEAK_COASTS"):
             use_environment()
+
+
+def test_a_trial_finds_nothing_and_what_was_used_is_used_again(
+    shelf: ArrayFiles, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(MEMO, "shelf", shelf)
+    with nothing_kept():
+        assert MEMO.shelf is None
+    assert MEMO.shelf is shelf
+    with pytest.raises(KeyboardInterrupt), nothing_kept():
+        raise KeyboardInterrupt
+    assert MEMO.shelf is shelf

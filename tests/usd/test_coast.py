@@ -9,23 +9,17 @@ import numpy as np
 import pytest
 from pxr import Usd
 
-from ocean_tweak.core import Area, Coast, Ocean, OceanParameters, Places, Raster, Water, WaveLayer
+from ocean_tweak.core import Area, Ocean, Places
 from ocean_tweak.core.data.frames import parse_frames
 from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.usd.export import Export
 from ocean_tweak.export.usd.package import Package
+from tests.coasts import SMALL_SEA as SEA
 
 from .conftest import value
 
 MESH = "/sea/geo/sea/surface"
 FRAMES = (9, 10, 11)
-#: from 12 m of water to 1 m of land, over 200 m
-BED = np.repeat(np.linspace(12.0, -1.0, 51)[np.newaxis], 51, axis=0)
-SEA = OceanParameters(
-    resolution=32, domain_size=200.0, water=Water(depth=20.0),
-    layers=(WaveLayer(wind_speed=9.0, fetch=60e3),),
-    coast=Coast(depth=Raster(BED, "bed"), spacing=4.0, rim=80.0, shortest_wavelength=40.0),
-)  # fmt: skip
 SQUARE = Area(240.0, 60, (-40.0, 0.0))
 
 
