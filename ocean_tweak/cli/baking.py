@@ -14,7 +14,7 @@ from dataclasses import replace
 from fractions import Fraction
 from math import lcm
 from pathlib import Path
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 from .. import __version__
 from ..core.data.frames import Frame, format_frames
@@ -78,7 +78,7 @@ def _bake_sea(arguments: argparse.Namespace, cache: Path, job: Job, spray: Wante
         )
     folder = open_folder(writable_folder(cache), job)
     files = None if spray is None else SpraySequence(folder, job.name, job.shot, spray.spray, spray.place)
-    return _make_all(arguments, folder, job, chosen, files)
+    return _make_all(arguments, _Wanted(folder, job, chosen, files))
 
 
 def _check_whole(job: Job) -> None:
@@ -113,38 +113,34 @@ def resume(arguments: argparse.Namespace) -> int:
     frames = wanted_frames(folder, job, arguments.frames)
     job = replace(job, frames=known_frames(folder, job) or frames)
     job.shot.check(frames)
-    return _make_all(arguments, folder, job, frames, baked_spray(folder, job.name, job.shot))
+    return _make_all(arguments, _Wanted(folder, job, frames, baked_spray(folder, job.name, job.shot)))
 
 
-def _make_all(
-    arguments: argparse.Namespace,
-    folder: Path,
-    job: Job,
-    frames: Sequence[Frame],
-    spray: SpraySequence | None,
-) -> int:
+class _Wanted(NamedTuple):
+    """Frames of a job in its folder, and their spray, which is made when they are there."""
+
+    folder: Path
+    job: Job
+    frames: Sequence[Frame]
+    spray: SpraySequence | None
+
+
+def _make_all(arguments: argparse.Namespace, wanted: _Wanted) -> int:
     """Bake incomplete frames and their spray. Returns the exit code."""
+    spray = wanted.spray
     if spray is not None and not arguments.estimate:
-        refuse_links(folder)
+        refuse_links(wanted.folder)
         spray.ask()  # first, so that a bake that is stopped early continues with it
-    code = _make(arguments, folder, job, frames, spray)
+    code = _make(arguments, wanted)
     if code != DONE or spray is None or arguments.estimate:
         return code
-    with _telling_how_to_go_on(folder):
-        return bake_spray(arguments, spray, frames)
+    with _telling_how_to_go_on(wanted.folder):
+        return bake_spray(arguments, spray, wanted.frames)
 
 
-def _make(
-    arguments: argparse.Namespace,
-    folder: Path,
-    job: Job,
-    frames: Sequence[Frame],
-    spray: SpraySequence | None,
-) -> int:
-    """Bake incomplete frames. Returns the exit code.
-
-    spray : that is baked afterwards, for which there must be room too
-    """
+def _make(arguments: argparse.Namespace, wanted: _Wanted) -> int:
+    """Bake incomplete frames, if there is room for them and their spray. Returns the exit code."""
+    folder, job, frames, spray = wanted
     if arguments.log:
         logs.to_file(log_file(folder))
         _LOG.info(
