@@ -186,7 +186,7 @@ def cut_out(item: bpy.types.Object, ocean: bpy.types.Object) -> bool:
     carrier, hull = carrier_of(item), own_hull(item)
     known, ride = (None, None) if carrier is None else ride_of(carrier)
     hull_cut.cut_out(item, known or ocean, hull)
-    return hull is not None and hull.waterline(level_at(item, known or ocean, ride)) is not None
+    return hull is not None and hull.is_cut(level_at(item, known or ocean, ride))
 
 
 def sink(item: bpy.types.Object) -> None:

@@ -93,6 +93,10 @@ class Hull:
             return None
         return Waterline(tuple(middle), *half, _fullness(np.abs(points[:, :2] - middle) / half))
 
+    def is_cut(self, level: float) -> bool:
+        """Whether water cuts it that stands at a height above the origin."""
+        return len(self._cut(self.vertices[:, 2] - level)) > 0
+
     def below(self, level: float) -> tuple[Array, Array]:
         """The least and the greatest x and y of what is under water that stands at a height above the origin.
 

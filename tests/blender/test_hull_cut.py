@@ -10,6 +10,7 @@ import pytest
 
 from . import floats
 from .test_velocity_blur import EEVEE_NAMES
+from .test_wakes import new_hull
 
 select, ocean = floats.select, floats.ocean
 LENGTH, BEAM, DEPTH = 24.0, 8.0, 3.0
@@ -275,6 +276,15 @@ def test_what_is_above_the_water_is_told_and_cut_out_when_it_comes_down(
     bpy.context.view_layer.update()
     dry, _ = shares(boat, *seen_from_above(boat), 0.5)
     assert dry == 0.0
+
+
+def test_a_box_in_the_water_is_not_told_to_go_there(water, select, empty_scene, capfd):
+    """Four of its edges pass the surface, too few for the shape of a waterline."""
+    box = new_hull(empty_scene, "Box")
+    box.location.z = water.location.z
+    select(box)
+    assert cut() == {"FINISHED"}
+    assert "does not cut" not in "".join(capfd.readouterr())
 
 
 def test_undo_and_redo(extension, water, new_boat, select, window):
