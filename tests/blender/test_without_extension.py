@@ -287,6 +287,9 @@ def test_a_wake_over_a_bake_stands_and_says_so(core, extension, horizon, saved, 
     said = render_as_a_farm(extension, blend, tmp_path)
     assert said.returncode == 3, said.stdout + said.stderr
     assert f"moves {area.name} of " in said.stderr
+    # it is baked already
+    assert "bake the ocean" not in said.stderr
+    assert "panel Bake lists under Renders Need Ocean Tweak" in said.stderr
 
 
 def render_as_a_farm(extension, blend, tmp_path):

@@ -178,8 +178,8 @@ def check_extension() -> None:
     if still:
         raise NeedsExtension(
             f"this Blender has no Ocean Tweak extension, which alone moves {', '.join(still)} of "
-            f"{bpy.data.filepath}: enable it on this machine, or bake the ocean, let it read the bake and "
-            "save the file"
+            f"{bpy.data.filepath}: enable it on this machine, or do what the file's panel Bake lists under "
+            "Renders Need Ocean Tweak, and save it"
         )
 
 
