@@ -92,6 +92,16 @@ def why_not(carrier: bpy.types.Object) -> str:
     return ""
 
 
+def undamped(ocean: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """What shall ride damped on an ocean and follows the surface, as that is baked."""
+    if settings_of(ocean).source == "LIVE":
+        return
+    for carrier in _solved():
+        its_ocean, ride = ride_of(carrier)
+        if its_ocean == ocean and can_ride(ride):
+            yield from float_carrier.carried_by(carrier)
+
+
 def footprint(place: Matrix, ocean: Matrix, ride: Ride, metres: float) -> Footprint:
     """The waterline of what is at a place, both matrices being those in the world.
 

@@ -12,6 +12,7 @@ from ..export.cache.job import CacheError
 from ..export.cache.locks import Held
 from ..scene import bake_process, bake_versions, cache_place, ocean_object
 from ..scene.bake_process import BakeProcess
+from ..scene.float_riding import undamped
 from ..scene.image_sequence import find_sequence
 from ..scene.portability import needs_of
 from ..scene.settings import OceanObjectError, settings_of
@@ -81,6 +82,11 @@ class OCEAN_OT_bake(BackgroundOperator, bpy.types.Operator):
         for need in needs_of(item):
             text = translated("Needs Ocean Tweak where it is rendered: {need}")
             self.report({"WARNING"}, text.format(need=need.text))
+        for floating in undamped(item):
+            text = translated(
+                "{name} follows the surface of the bake and is damped no longer: press Bake to Keyframes"
+            )
+            self.report({"WARNING"}, text.format(name=floating.name))
         return {"FINISHED"}
 
 

@@ -375,3 +375,16 @@ def test_spray_of_bows_is_in_no_bake_and_this_is_told(
     assert [text.partition(" because")[0] for text in told] == [
         "There is no spray of bows and of breakers on a coast as in frame 2"
     ]
+
+
+@pytest.mark.parametrize("damped", [True, False])
+def test_a_bake_says_what_is_damped_no_longer(extension, ocean_object, make_parameters, saved, capfd, damped):
+    ocean = ocean_object.add(saved, make_parameters())
+    boat = bpy.data.objects.new("Boat", None)
+    saved.collection.objects.link(boat)
+    floating = extension("scene.floating")
+    floating.float_on(boat, ocean, floating.Ride(damped=damped, waterline=8.0))
+    bpy.context.view_layer.objects.active = ocean
+    capfd.readouterr()
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    assert ("Boat follows the surface of the bake" in "".join(capfd.readouterr())) == damped
