@@ -83,7 +83,7 @@ def _checked(given: dict[str, Any]) -> tuple[float, float, Array]:
             raise ParameterError(key, value, f"must be a number from {least:g} to 1e6")
         numbers.append(float(value))
     for key, known_axes in (("up", _UP), ("forward", _FORWARD)):
-        if given.get(key, next(iter(known_axes))) not in known_axes:
+        if given.get(key, next(iter(known_axes))) not in [*known_axes]:  # which may be of any kind
             raise ParameterError(key, given[key], f"must be one of {', '.join(known_axes)}")
     cosine, sine = _FORWARD[given.get("forward", "x")]
     ahead = np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])

@@ -26,6 +26,8 @@ _PLY_TYPES = {
     "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
     "double": "f8", "float64": "f8",
 }  # fmt: skip
+#: names of the list of a face's vertices
+_CORNERS = frozenset({"vertex_indices", "vertex_index"})
 _PLY_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
@@ -50,7 +52,7 @@ def read_mesh(path: Path) -> Mesh:
             raise ValueError("its faces have vertices that it lacks, or that are nowhere")
     except OSError as error:
         raise ParameterError("file", str(path), f"cannot be read: {error.strerror}") from None
-    except (ValueError, IndexError, KeyError) as error:
+    except (ValueError, IndexError, KeyError, OverflowError) as error:
         raise ParameterError("file", str(path), f"is no mesh that can be read: {error}") from None
     return Mesh(vertices, faces)
 
@@ -100,7 +102,10 @@ def _ply(content: bytes) -> tuple[Array, Integers]:
         if element.name == "vertex":
             vertices = np.array([[row[name][0] for name in "xyz"] for row in rows], np.float64).reshape(-1, 3)
         elif element.name == "face":
-            found = [_fan([int(number) for number in next(iter(row.values()))]) for row in rows]
+            corners = _CORNERS.intersection(name for name, _ in element.properties)
+            if len(corners) != 1:
+                raise ValueError(f"its faces must have one list, {' or '.join(sorted(_CORNERS))}")
+            found = [_fan([int(number) for name in corners for number in row[name]]) for row in rows]
             triangles = np.array([each for face in found for each in face], np.int64).reshape(-1, 3)
     return vertices, triangles
 
@@ -143,5 +148,7 @@ def _row(element: _Element, values: _Values) -> dict[str, Sequence[float]]:
     row = {}
     for name, types in element.properties:
         count = 1 if len(types) == 1 else int(values.next(types[0], 1)[0])
+        if count < 0:
+            raise ValueError(f"one of its lists has {count} numbers")
         row[name] = values.next(types[-1], count)
     return row

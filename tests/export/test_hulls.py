@@ -56,6 +56,22 @@ def sea_with(folder: Path, **reference: object) -> Path:
     return path
 
 
+def with_face(face: bytes, before: bytes = b"") -> bytes:
+    """A PLY file of a triangle's three vertices and one face; before : properties of it, before its list."""
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4").tobytes()
+    axes = b"".join(b"property float %c\n" % axis for axis in b"xyz")
+    return (
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 3\n" + axes + b"element face 1\n" + before
+        + b"property list char int vertex_indices\nend_header\n" + vertices + face
+    )  # fmt: skip
+
+
+def test_a_face_may_have_other_properties_before_its_vertices(tmp_path: Path) -> None:
+    corners = b"\x03" + np.array([2, 0, 1], "<i4").tobytes()
+    (tmp_path / "a.ply").write_bytes(with_face(b"\x07" + corners, b"property uchar flags\n"))
+    assert read_mesh(tmp_path / "a.ply").triangles.tolist() == [[2, 0, 1]]
+
+
 @pytest.mark.parametrize("form", ["ascii", "binary_little_endian", "binary_big_endian"])
 def test_ply_and_obj_hold_the_same_mesh(form: str, tmp_path: Path) -> None:
     (tmp_path / "barge.obj").write_bytes(obj())
@@ -93,6 +109,7 @@ def test_another_waterline_unit_and_axes(tmp_path: Path) -> None:
     [
         ({"waterline": -4.0}, "1 m above the waterline"),
         ({"up": "x"}, "must be one of z, y"),
+        ({"up": ["z"]}, "must be one of z, y"),
         ({"forward": "z"}, "must be one of x, y, -x, -y"),
         ({"scale": 0}, "must be a number from 1e-06"),
         ({"axes": "yx"}, "unknown key"),
@@ -112,12 +129,15 @@ def test_what_is_no_hull_is_told_with_its_path(change: dict[str, object], told: 
         ("a.obj", b"v 0 0 0\nf 1 2 3\n"),
         ("a.obj", b"v 0 0\n"),
         ("a.obj", b"f a b c\n"),
+        ("a.obj", b"v 0 0 0\nf 1 1 99999999999999999999\n"),
         ("a.obj", b""),
         ("a.ply", ply("ascii")[:-20]),
         ("a.ply", ply("binary_little_endian")[:-5]),
         ("a.ply", b"ply\nformat text 1.0\nend_header\n"),
         ("a.ply", ply("ascii").replace(b"float x", b"half x")),
         ("a.ply", b"solid\n"),
+        ("a.ply", b"ply\nformat ascii 1.0\nelement face 1\nend_header\n"),
+        ("a.ply", with_face(b"\xff" + bytes(12))),
         ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 99999999\nproperty float x\nend_header\n"),
     ],
 )
