@@ -383,12 +383,14 @@ def test_a_hull_of_parts_is_cut_out_while_any_is_shown(water, new_boat, select, 
     tree = water.data.materials[0].node_tree
     told = []
     for hides in ((True, False), (False, True), (True, True)):
-        boat.hide_render, tender.hide_render = hides
+        boat.hide_render, tender.hide_render = boat.hide_viewport, tender.hide_viewport = hides
         bpy.context.view_layer.update()
         evaluated = water.evaluated_get(bpy.context.evaluated_depsgraph_get()).material_slots[0].material
         (group,) = [node for node in evaluated.node_tree.nodes if "Hidden" in node.inputs]
-        told.append(group.inputs["Hidden"].default_value)
-    assert told == [0.0, 0.0, 1.0]
+        told.append([group.inputs[name].default_value for name in ("Hidden", "Hidden In Window")])
+    assert told == [[0.0, 0.0], [0.0, 0.0], [1.0, 1.0]]
+    boat.hide_viewport = tender.hide_viewport = False
+    select(boat)  # what is hidden is deselected
     assert len(tree.animation_data.drivers) == 1
     bpy.ops.object.ocean_tweak_cut_out(use_cut=False)
     assert not tree.animation_data or not tree.animation_data.drivers
