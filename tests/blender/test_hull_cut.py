@@ -133,6 +133,22 @@ def test_a_hull_is_dry_at_24_frames_of_a_storm(water, new_boat, select, seen_fro
     assert "ependency cycle" not in "".join(capfd.readouterr())
 
 
+def test_the_hole_is_the_waterline(water, new_boat, select, seen_from_above):
+    """An ellipse of 0.9 of the rim's half axes about the boat's origin, in calm water."""
+    water.ocean_tweak.layers[0].wind_speed = 0.5
+    boat = new_boat(location=(25.0, 40.0, water.location.z))
+    select(boat)
+    assert cut() == {"FINISHED"}
+    boat.visible_camera = False
+    pixels, x, y = seen_from_above(boat)
+    hole = pixels[..., 2] < 0.5
+    to_item = np.array(boat.matrix_world.inverted())
+    u, v = (to_item[row, 0] * x + to_item[row, 1] * y + to_item[row, 3] for row in (0, 1))
+    np.testing.assert_allclose((u[hole].mean(), v[hole].mean()), 0.0, atol=0.1)
+    area = math.pi / 4 * 0.9 * LENGTH * 0.9 * BEAM
+    assert hole.sum() * (WIDTH / PIXELS) ** 2 == pytest.approx(area, rel=0.05)
+
+
 def test_eevee_cuts_it_too(water, new_boat, select, seen_from_above, empty_scene):
     boat = new_boat()
     select(boat)
