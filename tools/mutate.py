@@ -28,8 +28,8 @@ from .run_tests import ONE_THREAD
 
 TESTS = Path("tests/core")
 COPIED = (
-    "ocean_tweak", "tests/core", "tests/reference", "tests/layers.py", "tests/new_kinds.py", "pyproject.toml",
-    "examples/horizon.json", "docs/cascades.md", "docs/python.md",
+    "ocean_tweak", "tests/core", "tests/reference", "tests/coasts.py", "tests/layers.py",
+    "tests/new_kinds.py", "pyproject.toml", "examples/horizon.json", "docs/cascades.md", "docs/python.md",
 )  # fmt: skip
 KINDS = ("constants", "formulas", "named", "structure")
 AT_ONCE = 2

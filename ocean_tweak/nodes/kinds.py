@@ -74,6 +74,7 @@ ALL_KINDS = (
     held.AREA,
     held.DRY,
     held.DRIFTLESS,
+    held.NO_BOWS,
     spray.SPRAY,
     spray_look.SPRAY_LOOK,
     water_pattern.RIPPLES,

@@ -2,6 +2,7 @@
 """What the tests inside Blender share: seas small enough to be quick, and what they must look like."""
 
 import dataclasses
+import os
 import sys
 from fractions import Fraction
 from types import SimpleNamespace
@@ -11,6 +12,12 @@ import numpy as np
 import pytest
 
 from tests import blender_fixtures
+
+# Mesa's driver, which draws on a processor, takes minutes for filters that no image here asks for. It reads
+# this once, with the first picture of a process
+os.environ.setdefault(
+    "MESA_EXTENSION_OVERRIDE", "-GL_EXT_texture_filter_anisotropic -GL_ARB_texture_filter_anisotropic"
+)
 
 # fixtures for every test here
 package, extension = blender_fixtures.package, blender_fixtures.extension

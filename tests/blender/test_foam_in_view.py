@@ -16,7 +16,6 @@ SAMPLES = 128
 AROUND = 2
 #: wind in m/s, foam as a share of what it leaves, and engine: 5 and 9 Bft
 SHOTS = ((10.0, 5.0, "CYCLES"), (22.0, 3.0, "CYCLES"), (22.0, 3.0, "EEVEE"))
-ANISOTROPIC_FILTERS = "-GL_EXT_texture_filter_anisotropic -GL_ARB_texture_filter_anisotropic"
 
 
 @pytest.fixture(params=SHOTS, ids=lambda shot: f"{shot[0]:.0f} m/s in {shot[2]}")
@@ -25,8 +24,6 @@ def seen(request, extension, empty_scene, monkeypatch):
     its foam alone.
     """
     wind, coverage, engine = request.param
-    # Mesa's driver, which draws on a processor, takes minutes for filters that no image here asks for
-    monkeypatch.setenv("MESA_EXTENSION_OVERRIDE", ANISOTROPIC_FILTERS)
     core, mood = extension("core"), extension("scene.moods").Mood
     original = mood.sea
 

@@ -10,8 +10,6 @@ import pytest
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
-from .test_water_foam import ANISOTROPIC_FILTERS
-
 
 @pytest.fixture
 def startup_scene(package):
@@ -120,8 +118,7 @@ def test_what_is_added_next_is_in_the_picture(quick, empty_scene, extension, moo
 
 
 @pytest.mark.skipif("OCEAN_TWEAK_LONG_TESTS" not in os.environ, reason="EEVEE on a processor takes a minute")
-def test_both_engines_see_a_storm_as_bright(quick, empty_scene, tmp_path, monkeypatch):
-    monkeypatch.setenv("MESA_EXTENSION_OVERRIDE", ANISOTROPIC_FILTERS)
+def test_both_engines_see_a_storm_as_bright(quick, empty_scene, tmp_path):
     seen = []
     for engine in ("CYCLES", "EEVEE"):
         bpy.ops.ocean.add_scene(mood="STORM", engine=engine, use_buoy=False, use_new_scene=True)
