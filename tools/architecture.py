@@ -42,13 +42,12 @@ class Room:
 
     name : its dotted path below `ocean_tweak`
     about : first sentence of its docstring
-    modules, lines : of it all
+    modules : how many it has in all
     """
 
     name: str
     about: str
     modules: int
-    lines: int
 
 
 Imports = Mapping[str, frozenset[str]]
@@ -112,7 +111,6 @@ def _room(name: str, modules: Sequence[str]) -> Room:
         name,
         (ast.get_docstring(ast.parse(about.read_text(encoding="utf-8"))) or "").split("\n")[0],
         len(files),
-        sum(len(file.read_text(encoding="utf-8").splitlines()) for file in files),
     )
 
 
@@ -218,7 +216,7 @@ def _box(room: Room, x: float, y: float) -> str:
     colour = COLOURS.get(room.name.partition(".")[0], "#f1f5f9")
     left = x - WIDTH / 2
     about = textwrap.wrap(room.about, LETTERS, max_lines=LINES, placeholder=" …")
-    size = f"{room.modules} module{'s' * (room.modules != 1)}, {round(room.lines, -2) or room.lines:,} lines"
+    size = f"{room.modules} module{'s' * (room.modules != 1)}"
     rows = [
         (17, "bold", room.name),
         *((33 + 14 * n, "normal", line) for n, line in enumerate([*about, size])),

@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TOOLS = ROOT / ".tools"
+# a work tree may have a link to those of another checkout
+TOOLS = (ROOT / ".tools").resolve()
 REQUIREMENTS = ROOT / "tools" / "requirements"
 BUILD = ROOT / "build"
 WHEELS = ROOT / "wheels"
