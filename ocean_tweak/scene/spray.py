@@ -39,6 +39,8 @@ _MARK = "ocean_tweak_spray"
 #: custom property of the ocean that keeps its spray's material: the object itself is not saved
 _MATERIAL = "ocean_tweak_spray_material"
 _NAME = "Ocean Tweak Spray"
+#: of the Solid view, which knows no shaders: puffs of mist lie over each other as a haze, and hide no ship
+_IN_SOLID = (0.95, 0.95, 0.95, 0.15)
 #: layers of mist that light goes through in Cycles
 TRANSPARENT_BOUNCES = 256
 #: frames that there are: those of live spray have no files
@@ -169,7 +171,10 @@ def _tell_nodes(
 ) -> None:
     modifier = next(each for each in item.modifiers if is_of_kind(each.node_group, SPRAY))
     settings = settings_of(ocean)
-    inputs: dict[str, object] = {"Material": _material(ocean), "Life": spray.life}
+    material = _material(ocean)
+    if not item.data.materials:  # the Solid view takes colors of slots and not those of nodes
+        item.data.materials.append(material)
+    inputs: dict[str, object] = {"Material": material, "Life": spray.life}
     if baked is None:
         # a file a frame of the scene, whatever its stretch of time
         files, seconds = float(time_stretch(scene)), float(1 / frame_rate(scene))
@@ -228,6 +233,7 @@ def _material(ocean: bpy.types.Object) -> bpy.types.Material:
     material = bpy.data.materials.new(_NAME)
     if material.node_tree is None:  # a material has nodes from the start since Blender 5.0
         material.use_nodes = True
+    material.diffuse_color = _IN_SOLID
     shade = Shading(material.node_tree)
     look = shade.node("ShaderNodeGroup", node_tree=node_group(SPRAY_LOOK))
     shade.tree.links.new(look.outputs["Surface"], shade.node("ShaderNodeOutputMaterial").inputs["Surface"])

@@ -337,6 +337,15 @@ def test_a_file_is_without_points_but_with_their_material(extension, ocean, empt
     assert "Ocean Tweak Spray" not in bpy.data.materials
 
 
+def test_the_solid_view_sees_through_mist(ocean, empty_scene):
+    slots = spray_of(ocean).material_slots
+    assert [slot.material.name for slot in slots] == ["Ocean Tweak Spray"]
+    assert 0.0 < slots[0].material.diffuse_color[3] < 0.3
+    slots[0].material.diffuse_color = (0.2, 0.3, 0.4, 1.0)
+    empty_scene.frame_set(3)
+    assert [slot.material.diffuse_color[3] for slot in spray_of(ocean).material_slots] == [1.0]
+
+
 def test_more_than_the_memory_holds_is_told(extension, ocean, monkeypatch):
     monkeypatch.setattr(extension("core.sea.spray_outlook"), "usable_memory", lambda: 200_000)
     ocean.ocean_tweak.spray.amount = 50.0
