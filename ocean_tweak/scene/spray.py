@@ -40,7 +40,7 @@ _MARK = "ocean_tweak_spray"
 _MATERIAL = "ocean_tweak_spray_material"
 _NAME = "Ocean Tweak Spray"
 #: of the Solid view, which knows no shaders: puffs of mist lie over each other as a haze, and hide no ship
-_IN_SOLID = (0.95, 0.95, 0.95, 0.15)
+_IN_SOLID = (0.95, 0.95, 0.95, 0.08)
 #: layers of mist that light goes through in Cycles
 TRANSPARENT_BOUNCES = 256
 #: frames that there are: those of live spray have no files
