@@ -30,7 +30,7 @@ FOAM = 4
 FOAM_OF_TWO_AGES = 2
 #: the windrows: raised whenever the same foam is drawn out into others. Only files of foam that lies in them
 # carry it
-WINDROWS = 2
+WINDROWS = 3
 #: the spray: raised whenever the same sea and settings give different particles
 SPRAY = 3
 

@@ -44,8 +44,11 @@ _CELL, _STRETCH = 50.0, 4.0
 #: lanes per standard deviation of the waves that define them; offset between neighbouring lanes in cells (by
 # the golden section lanes never line up again); offset within a lane, in cells per standard deviation
 _LANES, _SHIFT, _UNLIKE = 1.0, 0.618, 0.12
+#: offset of the ends of cells, in cells per standard deviation of the lines, which end in points and are not
+# cut off straight
+_RAGGED = 0.1
 #: fraction of the variance of g that thins out foam towards the ends of cells, instead of cutting it off
-_THINNING = 0.06
+_THINNING = 0.08
 #: fraction of the variance of foam that fully resolved lines account for; and σ² over the ratio of that
 # fraction to the rest: a logistic distribution against a normal one
 _GATHERED, _LOGISTIC = 0.7, 2.9
@@ -141,10 +144,12 @@ class Windrows:
         off = _turn(along_x * x) + _turn(along_y * y)
         lanes = pattern.lanes.at(x, y)
         off += np.float32(_SHIFT) * np.rint(np.float32(_LANES) * lanes) + np.float32(_UNLIKE) * lanes
-        off -= np.rint(off)
-        ends = np.take(_ends(), (np.abs(off) * np.float32(2 * _AWAY)).astype(np.int32), mode="clip")
+        lines = pattern.lines_at(x, y)
+        ragged = np.float32(_RAGGED) * lines
+        off -= np.rint(off + ragged)
+        ends = np.take(_ends(), (np.abs(off + ragged) * np.float32(2 * _AWAY)).astype(np.int32), mode="clip")
         off *= np.float32((1.0 - 1.0 / _STRETCH) * 2.0 * math.pi / (along_x**2 + along_y**2))
-        lines = np.float32(math.sqrt(1.0 - _THINNING)) * pattern.lines_at(x, y)
+        lines *= np.float32(math.sqrt(1.0 - _THINNING))
         lines += np.float32(math.sqrt(_THINNING)) * ends
         lines = np.exp(np.float32(pattern.contrast) * lines)
         return off * np.float32(along_x), off * np.float32(along_y), lines
