@@ -24,6 +24,7 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import open_sea
 from ..parameters.spray import Spray
 from ..spray.drops import torn_rate
+from ..spray.gusts import gusts
 from ..spray.particles import Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
 from .coast_waves import CoastWaves
 from .foam_levels import FoamLevels
@@ -80,14 +81,14 @@ class TileSpray:
     def _look(self, index: int, _squares: Sequence[Square]) -> list[_Looked]:
         foam = self._foam
         n, side, model = foam.parameters.resolution, foam.parameters.domain_size, foam.foam_model
-        fields = foam.surface(model.reduced(index * model.step), {*_OF_WATER, "min_eigenvalue"}, TILE)
-        rate = torn_rate(tearing_wind(foam.parameters).speed)
+        time = model.reduced(index * model.step)
+        fields = foam.surface(time, {*_OF_WATER, "min_eigenvalue"}, TILE)
         strength = breaking_of(model, np.subtract(1.0, fields.min_eigenvalue))
         row, column = np.nonzero(strength)
         water = _Water(*(fields[name][row, column].astype(np.float64) for name in _Water._fields))
         cells = _Cells(column, row, side / n, 0)
         rest = np.stack((column, row), axis=-1).astype(np.float64) * (side / n)
-        births = rate * _torn(strength[row, column])
+        births = _torn(foam.parameters, strength[row, column], rest[:, 0], rest[:, 1], time)
         crests = _crests(model, foam.parameters, index, cells, rest, water, births)
         return [_Looked(cells, crests)]
 
@@ -142,8 +143,7 @@ class CameraSpray:
         rest = [np.stack((cells.column + 0.5, cells.row + 0.5), axis=-1) * cells.size for cells, _ in found]
         x, y = np.concatenate(rest).T
         water = _water(finest, x, y, time, coast)
-        rate = torn_rate(tearing_wind(finest.parameters).speed)
-        births = rate * np.concatenate([_torn(strength) for _, strength in found])
+        births = _torn(finest.parameters, np.concatenate([strength for _, strength in found]), x, y, time)
         height, velocity = water.displacement[:, 2], water.velocity
         if self._hulls is None:
             self._hulls = HullMotion(finest.parameters)
@@ -370,9 +370,12 @@ def _crests(
     )
 
 
-def _torn(strength: RealArray) -> RealArray:
-    """Share of the area of breaking crests of some strength that is torn, float32."""
-    return np.minimum(strength / np.float32(_ALL_TEARS), np.float32(1.0))
+def _torn(sea: OceanParameters, strength: RealArray, x: Array, y: Array, time: Fraction) -> Array:
+    """Particles per second and m² that the wind tears off crests, which break with some strength at rest
+    positions in m."""
+    wind, loop = tearing_wind(sea), None if sea.loop_duration is None else float(sea.loop_duration)
+    torn = np.minimum(strength / np.float32(_ALL_TEARS), np.float32(1.0))
+    return torn_rate(wind.speed) * torn * gusts(x, y, float(time), wind.direction, sea.seed, loop)
 
 
 def _in_the_air(crests: Sequence[Crests], spray: Spray, step: float) -> float:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 from ..data.errors import ParameterError
 from ..foam.threshold import foam_outlook, foam_wind
 from ..numerics.machine import usable_memory
@@ -95,6 +97,8 @@ def check_spray_memory(count: float, spray: Spray) -> None:
     if memory is None or count * BYTES <= _SHARE_OF_MEMORY * memory:
         return
     would_do = spray.amount * _SHARE_OF_MEMORY * memory / (count * BYTES)
+    last = 10.0 ** (math.floor(math.log10(would_do)) - 1)  # of two figures that are told, which round down
+    would_do = last * math.floor(would_do / last)
     raise SprayError(
         "spray.amount", spray.amount,
         f"makes about {count:,.0f} particles, which need {count * BYTES / 2**30:.1f} GB of memory, and spray "
