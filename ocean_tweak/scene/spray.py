@@ -155,6 +155,8 @@ def _new(ocean: bpy.types.Object) -> bpy.types.Object:
     item[_MARK] = ""
     item.parent = ocean
     item.hide_select = True
+    # from each puff of mist that a ray meets others go to the sun and around, through all the puffs there
+    item.visible_shadow = item.visible_diffuse = item.visible_glossy = False
     link_beside(item, ocean)
     item.modifiers.new(_NAME, "NODES").node_group = node_group(SPRAY)
     held_sea.keep_out(item, True)

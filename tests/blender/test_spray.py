@@ -439,3 +439,12 @@ def test_each_particle_is_in_the_repeat_that_is_nearest_to_the_camera(extension,
     np.testing.assert_allclose(shifts, np.rint(shifts), atol=1e-4)
     assert np.abs(found - (240.0, -30.0)).max() <= 50.001  # also where no repeat of its own is
     assert shifts[:, 1].min() < -0.5
+
+
+def test_light_goes_through_mist_to_the_camera_alone(ocean):
+    """Of a hurricane's mist every ray meets dozens of puffs: from each of them others would go through dozens
+    more."""
+    item = spray_of(ocean)
+    assert item.visible_camera
+    assert item.visible_transmission
+    assert not any((item.visible_shadow, item.visible_diffuse, item.visible_glossy))
