@@ -152,7 +152,10 @@ def _density(build: Builder, layers: Socket, left: Socket, seen: Socket, share: 
     share : of the particles, those that are shown, with the smallest numbers
     """
     crowd = build.math("DIVIDE", layers, _LAYERS)
-    densest = build.math("MINIMUM", build.math("DIVIDE", _LARGE_PUFF, seen), _DENSEST)
+    # a large puff is thinned below, and until then may be as much denser
+    large = build.math("DIVIDE", seen, _LARGE_PUFF)
+    densest = build.math("MAXIMUM", large, build.math("DIVIDE", 1.0, large))
+    densest = build.math("MINIMUM", densest, _DENSEST)
     least = build.math("MAXIMUM", build.math("MINIMUM", crowd, densest), _TINY)
     left = build.math("MAXIMUM", left, 0.0)
     number = build.math("DIVIDE", column(build, "number"), build.math("MULTIPLY", share, float(NUMBERS)))
@@ -164,4 +167,4 @@ def _density(build: Builder, layers: Socket, left: Socket, seen: Socket, share: 
     return build.math("MULTIPLY", density, build.math("MULTIPLY", near, near))
 
 
-SPRAY = GroupKind("Ocean Tweak Spray", 5, _build)
+SPRAY = GroupKind("Ocean Tweak Spray", 6, _build)

@@ -131,6 +131,24 @@ def test_light_in_dense_mist_is_gone_before_cycles_ends_it(puffs, extension):
     assert np.dot(covering, found["mist_density"]) == pytest.approx(np.dot(covering, found["left"]), rel=0.03)
 
 
+def test_mist_before_the_lens_is_of_few_puffs_that_take_as_much_light(puffs):
+    """Of puffs that fill much of the picture a ray meets dozens, each of which takes next to nothing."""
+    radius, random = 3.0, np.random.default_rng(6)
+    away, angle = random.uniform(25.0, 100.0, 6000), random.uniform(-0.5, 0.5, 6000)
+    height = random.uniform(-0.05, 0.05, 6000)
+    found = puffs(away[:, np.newaxis] * np.stack([np.cos(angle), np.sin(angle), height], 1), radius)
+    seen = radius / away
+    alone = found["left"] * (0.02 / seen) ** 2  # as thin as each one would be without the others
+    drawn = found["mist_density"] > 0.0
+    assert np.mean(drawn) < 0.35
+    for column in range(5):  # of the picture
+        here = np.abs(angle + 0.4 - 0.2 * column) < 0.1
+        taken = np.dot(seen[here] ** 2, found["mist_density"][here])
+        assert taken == pytest.approx(np.dot(seen[here] ** 2, alone[here]), rel=0.15)
+    # and none stands out: the larger it is seen, the fainter it is
+    assert np.all(found["mist_density"] <= 1.01 * np.maximum(0.02 / seen, alone))
+
+
 def test_a_puff_alone_is_as_dense_as_it_is_old_and_does_not_stand_out_at_the_lens(puffs):
     away, angles = np.array([500.0, 200.0, 100.0, 25.0, 5.0]), np.arange(5.0)
     found = puffs(away[:, np.newaxis] * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], 1), 1.0)
