@@ -166,7 +166,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
         "Base Color": shade.mix_vectors(through, shade.scale(below, lit), (1.0,) * 3),
         "Transmission Weight": through, "Roughness": roughness, "IOR": given["IOR"], "Normal": normal,
         "Specular IOR Level": shade.math("MULTIPLY", _mirrored(shade, normal), lit),
-        "Emission Color": crest_glow(shade, given, behind), "Emission Strength": 1.0,
+        "Emission Color": crest_glow(shade, given, behind, normal), "Emission Strength": 1.0,
     }  # fmt: skip
     water = shade.node("ShaderNodeBsdfPrincipled", inputs, distribution="GGX").outputs[0]
     piled = _normal(shade, given, cover.slope)
@@ -288,4 +288,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 15, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 16, _build, "ShaderNodeTree")

@@ -27,7 +27,7 @@ _LACES = ((0.013, 1.1, 1), (0.04, 0.7, 1), (0.12, 0.3, 1), (0.35, -0.4, 1), (1.0
 #: out, down the crests' fronts while it is young
 _FRESH = (0.08, 0.22, 0.40, 0.30, 0.0, 0.0)
 _YOUNG, _OLD = (0.02, 0.09, 0.36, 0.53, 0.0, 0.0), (0.01, 0.04, 0.18, 0.77, 0.0, 0.0)
-_SPILLED, _DRAWN_OUT = (0.03, 0.08, 0.19, 0.14, 0.40, 0.16), (0.01, 0.04, 0.10, 0.08, 0.40, 0.37)
+_SPILLED, _DRAWN_OUT = (0.05, 0.12, 0.20, 0.15, 0.32, 0.16), (0.03, 0.09, 0.17, 0.12, 0.32, 0.27)
 #: a vector has three numbers
 _HALVES = (slice(0, 3), slice(3, 6))
 _YOUTH = 0.8  # s, in which foam loses half of what it had while it was made
@@ -37,33 +37,33 @@ _FADING = 2.5  # s, half-life of foam that says nothing of its age
 #: m/s: from 7 Beaufort on old foam begins to lie in streaks, at 9 all of it does (WMO)
 _STREAKS = (13.9, 20.8)
 #: standard deviation of what softens the rims of old foam, which is thin, and of fresh foam
-_SOFT = (0.20, 0.15)
+_SOFT = (0.20, 0.17)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
 _FADE = (0.25, 1.0)
 #: Φ(x) = 1/(1 + exp(-ax - bx³)), wrong by 1.4e-4 at most (Page 1977)
 _PAGE = (1.5976, 0.070566)
 #: optical thickness of foam, a standard deviation of the laces inside its rim: over _GROWTH of age; and fresh
 #: where the crest breaks weakly and strongly, which it does from _STRONG on
-_THICK_OLD, _THICK_FRESH, _STRONG = (1.8, 0.22), (1.4, 5.0), (0.1, 0.7)
+_THICK_OLD, _THICK_FRESH, _STRONG = (2.6, 0.5), (2.4, 9.0), (0.1, 0.7)
 #: what of the thickness is left where the wind draws foam out
-_TORN = 0.6
+_TORN = 0.8
 #: of the logarithm of the thickness, for a grain of 1; of old and of fresh foam
-_UNEVEN = (-1.2, -0.6)
-#: where no lace is seen, at the share ½: mean of what thickness is in proportion to, and its relative
-#: variance; and how their logarithms grow with the share's quantile. Of old and of fresh foam, fitted to what
-#: is seen near the camera
-_INSIDE, _INSIDE_GROWTH = (4.1, 1.65), (0.1, 0.4)
-_CLUMPED, _CLUMPED_GROWTH = (2.3, 1.4), -0.15
+_UNEVEN = (-1.0, -0.8)
+#: relative variance of how deep inside their rims the points of a pixel are, where no lace is seen
+_DEEP = 0.57
+#: relative variance of a gamma distribution that lets as much light through as one of the variance 1 whose
+#: logarithm is normal; fitted
+_AS_GAMMA = 0.55
 #: weights of the laces in the grain of foam, whose variance is 1: of fresh foam, and of old as it was made
-#: and drawn out
-_FRESH_GRAIN = (0.50, 0.55, 0.54, 0.40, 0.0, 0.0)
-_GRAIN, _DRAWN_GRAIN = (0.26, 0.35, 0.44, 0.79, 0.0, 0.0), (0.2, 0.3, 0.4, 0.4, 0.6, 0.45)
+#: and drawn out. Some count the other way than in the cover, so that foam is not thickest in its middle
+_FRESH_GRAIN = (0.50, 0.60, -0.52, 0.35, 0.0, 0.0)
+_GRAIN, _DRAWN_GRAIN = (0.40, 0.55, 0.50, -0.53, 0.0, 0.0), (0.35, 0.5, 0.45, -0.45, -0.35, 0.3)
 #: from a rim inwards, in standard deviations of the laces: how far the slope of foam reaches
 _SLOPING = 0.6
 #: height of foam at its rim in cells, of old and of fresh foam, and of the billows of fresh foam
 _EDGE, _BILLOW = (0.035, 0.05), 0.055
 #: light that creases of fresh foam keep from themselves, and of piles that are too small to be seen
-_CREASED, _SHADOW = 0.35, 0.17
+_CREASED, _SHADOW = 0.21, 0.17
 #: from a rim outwards, in standard deviations of the laces: where water is shaded by foam, and how much
 _BESIDE, _SHADED = 0.25, (0.08, 0.4)
 #: of light from behind, what foam of the optical thickness 9 lets through evenly: 1/(1 + ¾(1 - g)τ) with g =
@@ -136,13 +136,15 @@ class _Laid(NamedTuple):
     height : sum of what is seen of them
     slope : of that, over the size of their cells
     unseen : variance of the rest
-    grain : sum of what is seen by other weights; even beside 0 where little is
+    grain : sum of what is seen by other weights
+    grain_unseen : variance of the rest of that
     """
 
     height: Socket
     slope: Socket
     unseen: Socket
     grain: Socket
+    grain_unseen: Socket
 
 
 def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> Cover:
@@ -153,17 +155,31 @@ def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) 
     height = shade.math("MULTIPLY", laid.height, shade.math("SQRT", kept))
     inwards = shade.math("SUBTRACT", _quantile(shade, foam.share), height)
     spread = shade.math("SQRT", shade.math("MULTIPLY_ADD", laid.unseen, kept, soft))
-    amount = _normal_share(shade, shade.math("DIVIDE", inwards, spread))
+    ratio = shade.math("DIVIDE", inwards, spread)
+    amount = _normal_share(shade, ratio)
+    depth = _depth(shade, inwards, spread, ratio, amount)
     # a share of 0 has no quantile, and heights between samples may be a little below 0
     has_any = shade.math("GREATER_THAN", foam.share, 1e-4)
     return Cover(
         amount=shade.math("MULTIPLY", amount, has_any),
-        density=_density(shade, foam, laid, inwards),
+        density=_density(shade, foam, laid, depth),
         light=_light(shade, foam, laid),
         shaded=shade.math("MULTIPLY", _shaded(shade, foam, laid, inwards), has_any),
         slope=shade.scale(laid.slope, _steepness(shade, given, foam, inwards)),
         bubbles=shade.math("MULTIPLY", _bubbles(shade, laid, kept, inwards), has_any),
     )
+
+
+def _depth(shade: Shading, inwards: Socket, spread: Socket, ratio: Socket, amount: Socket) -> Socket:
+    """Mean of how deep inside its rim foam lies where it covers, in standard deviations of the laces.
+
+    Of a normal distribution of the mean m and the deviation s, what is above 0 has the mean
+    m + s φ(m/s)/Φ(m/s).
+    """
+    square = shade.math("MULTIPLY", shade.math("MULTIPLY", ratio, ratio), -0.5)
+    bell = shade.math("MULTIPLY", shade.math("EXPONENT", square), 1.0 / math.sqrt(2.0 * math.pi))
+    hazard = shade.math("DIVIDE", bell, shade.math("MAXIMUM", amount, 1e-5))
+    return shade.math("MAXIMUM", shade.math("MULTIPLY_ADD", spread, hazard, inwards), 0.0)
 
 
 def _bubbles(shade: Shading, laid: _Laid, kept: Socket, inwards: Socket) -> Socket:
@@ -177,6 +193,7 @@ def _laid(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> _L
     unseen: Socket | float = 0.0
     slope: Socket | tuple[float, float, float] = (0.0, 0.0, 0.0)
     grain: Socket | float = 0.0
+    grain_unseen: Socket | float = 0.0
     variances = _variances(shade, foam)
     weights = _weights(shade, foam)
     for number, (size, turn, stretch) in enumerate(_LACES):
@@ -192,7 +209,9 @@ def _laid(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> _L
         unseen = shade.math("ADD", unseen, hidden)
         seen = shade.math("MULTIPLY", weights[number], shade.math("SUBTRACT", 1.0, fading))
         grain = shade.math("MULTIPLY_ADD", layer.height, seen, grain)
-    return _Laid(height, slope, unseen, grain)
+        grain_unseen = shade.math("MULTIPLY_ADD", weights[number], weights[number], grain_unseen)
+        grain_unseen = shade.math("SUBTRACT", grain_unseen, shade.math("MULTIPLY", seen, seen))
+    return _Laid(height, slope, unseen, grain, grain_unseen)
 
 
 def _streaks(shade: Shading, given: dict[str, Socket]) -> Socket:
@@ -247,26 +266,23 @@ def _quantile(shade: Shading, share: Socket) -> Socket:
     return shade.math("MULTIPLY", shade.math("SINH", third), 2.0 * math.sqrt(a / (3.0 * b)))
 
 
-def _density(shade: Shading, foam: Foam, laid: _Laid, inwards: Socket) -> Socket:
+def _density(shade: Shading, foam: Foam, laid: _Laid, depth: Socket) -> Socket:
     """How much of the light foam keeps from the water: by Beer and Lambert's law, of a thickness that grows
-    inwards from nothing, and varies.
+    inwards from nothing, and varies: its logarithm is normally distributed.
 
-    Thickness that is too small to be seen has a gamma distribution of the relative variance v, by which
-    exp(-t) becomes (1 + vt)^(-1/v) in the mean (Barker 1996).
+    Thickness that is too small to be seen counts as if it had a gamma distribution, of the relative
+    variance v, by which exp(-t) becomes (1 + vt)^(-1/v) in the mean (Barker 1996).
     """
-    growth = shade.math("EXPONENT", shade.math("MULTIPLY", inwards, shade.mix(foam.youth, *_INSIDE_GROWTH)))
-    mean = shade.math("MULTIPLY", growth, shade.mix(foam.youth, *_INSIDE))
-    inside = shade.mix(laid.unseen, shade.math("MAXIMUM", inwards, 0.0), mean)
     old = shade.smooth(foam.age, *_GROWTH, *_THICK_OLD)
     fresh = shade.smooth(foam.breaking, *_STRONG, *_THICK_FRESH)
-    torn = shade.mix(foam.streaks, 1.0, _TORN)
-    uneven = shade.math("MULTIPLY", laid.grain, shade.mix(foam.youth, *_UNEVEN))
-    thick = shade.math("MULTIPLY", shade.mix(foam.youth, old, fresh), shade.math("EXPONENT", uneven))
-    thick = shade.math("MULTIPLY", thick, torn)
-    clumped = shade.math("EXPONENT", shade.math("MULTIPLY", inwards, _CLUMPED_GROWTH))
-    clumped = shade.math("MULTIPLY", clumped, shade.mix(foam.youth, *_CLUMPED))
-    variance = shade.math("MULTIPLY_ADD", laid.unseen, clumped, 0.02)
-    thick = shade.math("MULTIPLY", thick, inside)
+    thick = shade.math("MULTIPLY", shade.mix(foam.youth, old, fresh), shade.mix(foam.streaks, 1.0, _TORN))
+    uneven = shade.mix(foam.youth, *_UNEVEN)
+    hidden = shade.math("MULTIPLY", shade.math("MULTIPLY", uneven, uneven), laid.grain_unseen)
+    grown = shade.math("MULTIPLY_ADD", hidden, 0.5, shade.math("MULTIPLY", laid.grain, uneven))
+    thick = shade.math("MULTIPLY", shade.math("MULTIPLY", thick, shade.math("EXPONENT", grown)), depth)
+    spread = shade.math("SUBTRACT", shade.math("EXPONENT", hidden), 1.0)
+    spread = shade.math("MULTIPLY_ADD", laid.unseen, _DEEP, spread)
+    variance = shade.math("MULTIPLY_ADD", spread, _AS_GAMMA, 0.02)
     base = shade.math("MULTIPLY_ADD", variance, thick, 1.0)
     through = shade.math("POWER", base, shade.math("DIVIDE", -1.0, variance))
     return shade.math("SUBTRACT", 1.0, through)

@@ -7,7 +7,10 @@ leaves the water is (1 - r)R/(1 - rR), r = 0.47 the share that a flat surface th
 (Saunderson 1942).
 
 A crest between the eye and a low sun scatters its light forward, by the phase function of Blasi, Le Saëc &
-Schlick (1993), and absorbs some on the way through the crest, which is shorter the sharper the crest is.
+Schlick (1993). Its back, as steep as its front, meets the sun at an angle. A crest is a wedge: ways through
+it are as often short as long, up to a longest one that is shorter the sharper the crest is, so a mean of what
+water leaves of the light comes through: (1 - exp(-a s))/(a s). What meets the front from inside partly
+stays (Fresnel).
 """
 
 from __future__ import annotations
@@ -26,14 +29,14 @@ SURFACE_FACTOR = 0.33
 _OLD_BUBBLES = 0.55
 #: cusps between which a crest is sharp
 _SHARP = (0.12, 0.42)
-#: path of light in m through a round and through a sharp crest
-_WAYS = (7.0, 1.2)
+#: longest path of light in m through a round and through a sharp crest
+_WAYS = (11.0, 2.2)
 #: how much more of the light goes on forward than aside: k of the phase function
 _FORWARD = 0.72
 #: sine of the slope away from the sun between which light comes through
 _AWAY = (0.05, 0.45)
 #: share of the light on a crest's back that is scattered in it
-_SCATTERED = 0.25
+_SCATTERED = 0.35
 
 
 def coefficients(shade: Shading, given: dict[str, Socket], foam: Foam, cover: Cover) -> tuple[Socket, Socket]:
@@ -70,27 +73,29 @@ def body(shade: Shading, given: dict[str, Socket], absorption: Socket, backscatt
 
 def light_through_crests(shade: Shading, given: dict[str, Socket], absorption: Socket) -> Socket:
     """Irradiance of the sun on the side of a crest that is turned away from it, through the crest."""
-    x, y, _ = shade.separate(_to_sun(shade, given))
-    level = shade.combine(x, y)
+    x, y, high = shade.separate(_to_sun(shade, given))
     normal = shade.node("ShaderNodeNewGeometry").outputs["Normal"]
-    turned_away = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", normal, level), -1.0)
+    turned_away = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", normal, shade.combine(x, y)), -1.0)
     through = shade.smooth(turned_away, *_AWAY)
-    # a sun overhead meets no crest's back
-    meets = shade.number("LENGTH", level)
+    # cosine of the sun's angle to the back's normal, which is the front's turned about the vertical
+    met = shade.math("MULTIPLY_ADD", shade.separate(normal)[2], high, turned_away)
+    met = shade.math("MAXIMUM", met, 0.0)
     sharp = sharpness(shade)
-    share = shade.math("MULTIPLY", shade.math("MULTIPLY", through, meets), sharp)
+    share = shade.math("MULTIPLY", shade.math("MULTIPLY", through, met), sharp)
     share = shade.math("MULTIPLY", share, given["Crest Glow"])
-    left = _left_after(shade, absorption, shade.mix(sharp, *_WAYS))
+    left = _left_in_wedge(shade, absorption, shade.mix(sharp, *_WAYS))
     return shade.scale(shade.vector("MULTIPLY", given["Sun Light"], left), share)
 
 
-def crest_glow(shade: Shading, given: dict[str, Socket], through: Socket) -> Socket:
-    """Radiance towards the eye of light that comes through a crest."""
+def crest_glow(shade: Shading, given: dict[str, Socket], through: Socket, normal: Socket) -> Socket:
+    """Radiance towards the eye of light that comes through a crest, and out where its normal is this."""
     incoming = shade.node("ShaderNodeNewGeometry").outputs["Incoming"]
     towards = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", incoming, _to_sun(shade, given)), -1.0)
     nearer = shade.math("MULTIPLY_ADD", towards, -_FORWARD, 1.0)
     phase = shade.math("DIVIDE", (1.0 - _FORWARD**2) / 12.566, shade.math("MULTIPLY", nearer, nearer))
-    return shade.scale(through, shade.math("MULTIPLY", phase, _SCATTERED))
+    stays = shade.node("ShaderNodeFresnel", {"IOR": given["IOR"], "Normal": normal}).outputs[0]
+    leaves = shade.math("MULTIPLY", shade.math("SUBTRACT", 1.0, stays), _SCATTERED)
+    return shade.scale(through, shade.math("MULTIPLY", phase, leaves))
 
 
 def _to_sun(shade: Shading, given: dict[str, Socket]) -> Socket:
@@ -101,3 +106,10 @@ def _left_after(shade: Shading, lost: Socket, way: Socket) -> Socket:
     """Fraction of light that remains after a path in m, for an attenuation per metre, by colour."""
     parts = shade.separate(shade.scale(lost, shade.math("MULTIPLY", way, -1.0)))
     return shade.combine(*(shade.math("EXPONENT", part) for part in parts))
+
+
+def _left_in_wedge(shade: Shading, lost: Socket, longest: Socket) -> Socket:
+    """Mean of what remains after paths of all lengths up to one in m, by colour."""
+    depth = shade.vector("MAXIMUM", shade.scale(lost, longest), (1e-3,) * 3)
+    gone = shade.vector("SUBTRACT", (1.0,) * 3, _left_after(shade, depth, 1.0))
+    return shade.vector("DIVIDE", gone, depth)

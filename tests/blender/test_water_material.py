@@ -182,12 +182,54 @@ def test_a_normal_image_turns_the_surface(inputs, sea, seen):
     assert seen(45.0)[0] == pytest.approx(fresnel(60.0), rel=0.04)
 
 
-def glow(inputs, seen):
+def glow(inputs, seen, sun=(8.0, 8.0, 8.0)):
     """What the sun adds at a crest that leans towards the camera, in red, green and blue."""
     inputs["Sun Light"].default_value = (0.0, 0.0, 0.0, 1.0)
     without = seen(80.0)
-    inputs["Sun Light"].default_value = (8.0, 8.0, 8.0, 1.0)
+    inputs["Sun Light"].default_value = (*sun, 1.0)
     return seen(80.0) - without
+
+
+def left_in_wedge(absorption, longest):
+    """What ways up to the longest, in m, leave of light in the mean, by Beer and Lambert."""
+    way = (np.arange(1000) + 0.5) / 1000 * longest
+    return np.exp(-np.outer(way, absorption)).mean(axis=0)
+
+
+@pytest.fixture
+def sharp_crest(sea, inputs):
+    """The square as the front of a sharp crest, which rises by 0.3 away from the camera, along +y."""
+    inputs["Absorption"].default_value = (0.345, 0.067, 0.040, 1.0)
+    cusp = sea.data.attributes.new("cusp", "FLOAT", "POINT")
+    cusp.data.foreach_set("value", np.full(4, 1.0, np.float32))
+    for vertex in sea.data.vertices:
+        vertex.co.z = 0.3 * vertex.co.y
+    return np.array((0.345, 0.067, 0.040))
+
+
+def test_a_crest_before_a_setting_sun_has_the_sun_s_colour(inputs, seen, sharp_crest):
+    """And what water takes from it, which is more red than green; at this sun that leaves no green."""
+    inputs["Sun Direction"].default_value = (0.0, math.cos(0.08), math.sin(0.08))
+    sun = np.array((3.7, 1.8, 0.4))
+    shown = glow(inputs, seen, sun)
+    expected = sun * left_in_wedge(sharp_crest, 2.2)
+    np.testing.assert_allclose(shown / shown[0], expected / expected[0], rtol=0.03)
+    assert shown[0] > shown[1] > shown[2] > 0.0
+
+
+def test_a_crest_shines_by_how_steeply_the_sun_meets_its_back(inputs, seen, sharp_crest):
+    """The back is as steep as the front. Foam, which shines evenly, tells: its light goes as that cosine."""
+    del sharp_crest
+    inputs["Foam Map"].default_value, shown, expected = 1.0, [], []
+    for high in (0.05, 0.15, 0.3):
+        inputs["Sun Direction"].default_value = (0.0, math.cos(high), math.sin(high))
+        shown.append(glow(inputs, seen)[1])
+        # the share of the front that is turned away is the material's own smooth step over slopes
+        leaning = math.sin(math.atan(0.3)) * math.cos(high)
+        part = (leaning - 0.05) / 0.40
+        expected.append(part * part * (3.0 - 2.0 * part) * math.sin(math.atan(0.3) + high))
+    np.testing.assert_allclose(np.divide(shown, shown[0]), np.divide(expected, expected[0]), rtol=0.05)
+    assert shown[0] < shown[1] < shown[2]
 
 
 def test_crests_before_a_low_sun_shine_green(inputs, sea, seen):
@@ -211,7 +253,7 @@ def test_crests_before_a_low_sun_shine_green(inputs, sea, seen):
 
 
 def test_foam_on_the_shaded_side_of_a_crest_is_lit_through_it(inputs, sea, seen):
-    """By what 1.2 m of water leave of the sun (Beer and Lambert), and brighter than water is there."""
+    """By what up to 2.2 m of water leave of the sun in the mean, and brighter than water is there."""
     absorption = np.array([0.40, 0.105, 0.19])
     inputs["Absorption"].default_value = (*absorption, 1.0)
     cusp = sea.data.attributes.new("cusp", "FLOAT", "POINT")
@@ -223,7 +265,7 @@ def test_foam_on_the_shaded_side_of_a_crest_is_lit_through_it(inputs, sea, seen)
     add_foam(sea, 1.0)
     of_foam = glow(inputs, seen)
     colour = np.array(inputs["Foam Color"].default_value[:3])
-    left = colour * np.exp(-1.2 * absorption)
+    left = colour * left_in_wedge(absorption, 2.2)
     np.testing.assert_allclose(of_foam / of_foam[1], left / left[1], rtol=0.02)
     assert of_foam.min() > of_water.min()
     assert 0.05 < of_foam[1] / (8.0 * left[1] / math.pi) < 0.5  # no more than half gets through
