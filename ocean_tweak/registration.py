@@ -17,7 +17,7 @@ from .scene.cache_place import cache_folder, own_uid
 from .scene.command_process import CommandProcess
 from .scene.portability import needs_of
 from .scene.settings import OceanObjectError, all_oceans, shown_oceans
-from .scene.shots import needed_maps, scene_frames, shot_of
+from .scene.shots import needed_maps, scene_frames, shot_of, with_surroundings
 from .scene.view_layers import is_in_view_layer
 from .ui import (
     adding,
@@ -106,7 +106,7 @@ class _SceneOceans(Mapping[str, cli.FileSea]):
         """The sea of an object, over the frames of its scene."""
         item, scene = self._oceans[name]
         frames = scene_frames(scene)
-        shot = shot_of(item, scene, frames)
+        shot = with_surroundings(shot_of(item, scene, frames), item, scene, frames)
         if not is_in_view_layer(item, scene):
             _log.warning("%s is in no view layer of %s that is rendered: no picture has it", name, scene.name)
         try:

@@ -21,7 +21,6 @@ from ..core.data.frames import Frame, format_frames
 from ..core.data.printable import LONGEST, printable, readable_bytes
 from ..core.numerics.machine import usable_cores
 from ..core.numerics.memo import MEMO
-from ..core.parameters.patch_seas import OVER_BED
 from ..core.sea.bake import BakedFrame, ShotSeas
 from ..core.sea.bake import bake as make_frames
 from ..core.sea.memory import check_memory, remedy_for
@@ -232,7 +231,7 @@ def _frames(
 def _prepare(job: Job, frame: Frame, tell: Callable[[Frame, str], None]) -> None:
     """Compute a coast's waves once, and keep them where all processes find them."""
     if job.shot.parameters.has_coast:
-        ShotSeas(job.shot, job.on, OVER_BED in job.outputs).prepare(frame, tell)
+        ShotSeas(job.shot, job.on, job.outputs).prepare(frame, tell)
         MEMO.drop()
 
 

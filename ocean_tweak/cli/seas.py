@@ -126,7 +126,7 @@ def changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
     made = Shot.from_dict(with_rasters(OceanParameters, with_hulls(data, Path()), Path()))
     if arguments.plan is None:
         return made
-    return Shot(planned(made.parameters, arguments.plan), made.animation)
+    return dataclasses.replace(made, parameters=planned(made.parameters, arguments.plan))
 
 
 def _value(text: str) -> Any:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names of baked files: sea_disp.0001.exr, of a patch sea_p2_disp.0001.exr and sea_p2_points.0001.ply, and of
-a coast sea_coast.0001.ply."""
+"""Names of baked files: sea_disp.0001.exr, of a patch sea_p2_disp.0001.exr and sea_p2_points.0001.ply, of a
+coast sea_coast.0001.ply, and of wakes sea_wakes.0001.ply."""
 
 from __future__ import annotations
 
@@ -14,10 +14,12 @@ from ..core.synthesis.channels import MAPS
 POINTS, SMALL_POINTS = "points", "small_points"
 #: the same for what is over the bed of a coast
 COAST = "coast"
+#: the same for waves that do not repeat, around the camera
+WAKES = "wakes"
 #: the same for spray, whose files are in a folder of this name
 SPRAY = "spray"
 #: everything that can be baked, as listed in jobs: images, and points
-BAKED = (*MAPS, POINTS, COAST)
+BAKED = (*MAPS, POINTS, COAST, WAKES)
 
 _IMAGE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
 
@@ -36,10 +38,10 @@ class ImageFile(NamedTuple):
 def frame_file(name: str, map_name: str, frame: Frame, patch: int | None = None) -> str:
     """The name of a frame's file.
 
-    map_name : one of MAPS, POINTS, SMALL_POINTS, COAST or SPRAY
+    map_name : one of MAPS, POINTS, SMALL_POINTS, COAST, WAKES or SPRAY
     patch : its number, from 1, in a sea of several patches
     """
-    ending = "ply" if map_name in (POINTS, SMALL_POINTS, COAST, SPRAY) else "exr"
+    ending = "ply" if map_name in (POINTS, SMALL_POINTS, COAST, WAKES, SPRAY) else "exr"
     return f"{files_start(name, map_name, patch)}{frame_label(frame)}.{ending}"
 
 

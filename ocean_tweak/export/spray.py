@@ -12,7 +12,7 @@ import contextlib
 import json
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +46,7 @@ class WantedSpray:
 
     def of(self, shot: Shot) -> Shot:
         """A shot with this spray."""
-        return Shot(shot.parameters.replace(spray=self.spray), shot.animation)
+        return replace(shot, parameters=shot.parameters.replace(spray=self.spray))
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in `spray.json`."""

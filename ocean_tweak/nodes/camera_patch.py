@@ -66,7 +66,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     whole = _turned(build, turned, {name: output(read, socket) for name, socket in SOCKETS.items()})
     is_weighted, weight = _weight(build)
     is_bounded = build.logic("NOT", build.given("Repeats"), None)
-    over = build.switch("FLOAT", _is_over(build, place, lies), 0.0, 1.0)
+    over = build.switch("FLOAT", is_over(build, place, lies), 0.0, 1.0)
     bounded = {name: build.scaled(value, over) for name, value in whole.items()}
     whole = {name: build.switch("VECTOR", is_bounded, whole[name], bounded[name]) for name in CARRIED}
     weighted = weighted_by(build, whole, weight)
@@ -80,7 +80,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build.finish_with(sums)
 
 
-def _is_over(build: Builder, place: Socket, facts: dict[str, Socket]) -> Socket:
+def is_over(build: Builder, place: Socket, facts: dict[str, Socket]) -> Socket:
     """Whether a place, relative to a mesh's first vertex, is within the mesh."""
     extent = build.vector("MULTIPLY", facts["Spacing"], cells(build, facts["Columns"], facts["Rows"]))
     from_middle = build.vector("SUBTRACT", build.vector("DIVIDE", place, extent), (0.5, 0.5, 0.5))

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Geometry nodes for the values on a grid around the camera: the sum of an ocean's patches, or its mesh.
 
-Foam is taken from the points around the camera if there are any, otherwise from the ocean's mesh. Over a bed
+Foam is taken from the points around the camera if there are any, otherwise from the ocean's mesh and from
+that of what does not repeat, if it is baked. Over a bed
 the sum is weighted and added to, `over_bed`; what does not repeat, such as wakes, is on top.
 """
 
@@ -13,7 +14,7 @@ from ..core.parameters.patch import MOST_PATCHES
 from .averaged import AVERAGED, SOCKETS
 from .averages import AVERAGES, ocean_carried
 from .building import Builder, Plug, Socket, output
-from .camera_patch import CAMERA_PATCH, Values, weighted_by
+from .camera_patch import CAMERA_PATCH, Values, is_over, weighted_by
 from .fields import alone, combined, coordinates, named_attribute
 from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, FOAM_AGE, OTHERS, SLOPES, VELOCITY, WEIGHT
 from .over_bed import DEPTH, FOAM_OVER_BED, IS_THERE, OVER_BED, SHARE
@@ -78,8 +79,9 @@ def _build(tree: bpy.types.NodeTree) -> None:
     is_one = build.compare("LESS_EQUAL", alone(build, "LENGTH", output(info, "Scale")), 0.0, "FLOAT")
     own = _of_mesh(build, facts, is_one)
     around = dict(zip((FOAM, BREAKING, FOAM_AGE), coordinates(build, build.given("Foam")), strict=True))
+    own_foam = _more_foam(build, {name: own[name] for name in around}, _foam_of_area(build, facts))
     foam = {
-        name: build.switch("FLOAT", build.given("Has Foam"), own[name], value)
+        name: build.switch("FLOAT", build.given("Has Foam"), own_foam[name], value)
         for name, value in around.items()
     }
     sums = {
@@ -134,10 +136,37 @@ def _foam_over_bed(build: Builder, bed: bpy.types.Node, foam: dict[str, Socket])
         zip((FOAM, BREAKING, FOAM_AGE), coordinates(build, output(bed, FOAM_OVER_BED)), strict=True)
     )
     left = {name: build.math("MULTIPLY", foam[name], share) for name in (FOAM, BREAKING)}
-    more = build.compare("GREATER_THAN", of_bed[FOAM], left[FOAM], "FLOAT")
-    whole = {name: build.math("MAXIMUM", left[name], of_bed[name]) for name in left}
-    whole[FOAM_AGE] = build.switch("FLOAT", more, foam[FOAM_AGE], of_bed[FOAM_AGE])
+    whole = _more_foam(build, {**left, FOAM_AGE: foam[FOAM_AGE]}, of_bed)
     return {name: build.switch("FLOAT", output(bed, IS_THERE), foam[name], whole[name]) for name in foam}
+
+
+def _more_foam(build: Builder, one: dict[str, Socket], other: dict[str, Socket]) -> dict[str, Socket]:
+    """The most of two foams and of how they break, with the age of that of which there is more."""
+    more = build.compare("GREATER_THAN", other[FOAM], one[FOAM], "FLOAT")
+    most = {name: build.math("MAXIMUM", one[name], other[name]) for name in (FOAM, BREAKING)}
+    return {**most, FOAM_AGE: build.switch("FLOAT", more, one[FOAM_AGE], other[FOAM_AGE])}
+
+
+def _foam_of_area(build: Builder, of_ocean: bpy.types.Node) -> dict[str, Socket]:
+    """Foam, breaking and age of what does not repeat, at the grid's vertices; live it has none of its own."""
+    area = {"Object": build.given(AREA_INPUT)}
+    mesh = output(build.add("GeometryNodeObjectInfo", area, transform_space="ORIGINAL"), "Geometry")
+    facts = build.group(node_group(GRID_FACTS), {"Geometry": mesh})
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    in_ocean = build.vector("ADD", position, output(of_ocean, "Corner"))
+    place = build.vector("SUBTRACT", in_ocean, output(facts, "Corner"))
+    lies = {name: output(facts, name) for name in ("Columns", "Rows", "Spacing")}
+    names = (FOAM, BREAKING, FOAM_AGE)
+    values = (output(named_attribute(build, name, "FLOAT"), "Attribute") for name in names)
+    read = {
+        "Geometry": output(facts, "Geometry"),
+        "Value": combined(build, *values),
+        "Place": build.vector("DIVIDE", place, lies["Spacing"]),
+        **{name: lies[name] for name in ("Columns", "Rows")},
+    }
+    found = output(build.group(node_group(CELL), read), "Value")
+    there = build.scaled(found, build.switch("FLOAT", is_over(build, place, lies), 0.0, 1.0))
+    return dict(zip(names, coordinates(build, there), strict=True))
 
 
 def _of_mesh(build: Builder, facts: bpy.types.Node, is_moving: Socket) -> dict[str, Socket]:
@@ -199,4 +228,4 @@ def _weights(build: Builder, own: bpy.types.Node) -> dict[str, Socket]:
     return {"Weights": output(facts, "Geometry"), **lie}
 
 
-CAMERA_SUM = GroupKind("Ocean Tweak Camera Sum", 2, _build)
+CAMERA_SUM = GroupKind("Ocean Tweak Camera Sum", 3, _build)

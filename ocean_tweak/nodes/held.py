@@ -13,8 +13,8 @@ from .names import VELOCITY
 from .versioned import GroupKind
 
 _REMEDY = (
-    "because the Ocean Tweak extension does not run here and a bake of the tile does not have them: enable "
-    "the extension, or mute their layers"
+    "because the Ocean Tweak extension does not run here and the bake does not have them: enable the "
+    "extension, or bake the ocean again"
 )
 
 
@@ -34,7 +34,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build.finish(held_still(build, build.given("Geometry"), state, _REMEDY))
 
 
-def _note(name: str, state: str, remedy: str) -> GroupKind:
+def _note(name: str, state: str, remedy: str, version: int = 1) -> GroupKind:
     """A group that changes nothing and says so where the extension is missing."""
 
     def build(tree: bpy.types.NodeTree) -> None:
@@ -42,11 +42,11 @@ def _note(name: str, state: str, remedy: str) -> GroupKind:
         geometry = build.given("Geometry")
         build.finish(build.switch("GEOMETRY", is_absent(build, state, remedy), geometry, geometry))
 
-    return GroupKind(name, 1, build)
+    return GroupKind(name, version, build)
 
 
 #: waves around a camera that do not repeat
-AREA = GroupKind("Ocean Tweak Area", 1, _build)
+AREA = GroupKind("Ocean Tweak Area", 2, _build)
 #: an ocean whose bake has no spray
 DRY = _note(
     "Ocean Tweak Dry",
@@ -54,12 +54,13 @@ DRY = _note(
     "because the Ocean Tweak extension does not run here and the bake has none: enable the extension, or "
     "bake the ocean again",
 )
-#: an ocean around a camera, whose bakes leave out what bows and a coast's breakers throw up
+#: an ocean around a camera, whose bake is without what bows or a coast's breakers throw up
 NO_BOWS = _note(
     "Ocean Tweak No Bows",
     "There is no spray of bows and of breakers on a coast as in frame",
-    "because the Ocean Tweak extension does not run here and no bake around a camera has it: enable the "
-    "extension and press Back to Live",
+    "because the Ocean Tweak extension does not run here and the bake has none of it: enable the extension "
+    "and press Back to Live",
+    version=2,
 )
 #: the carrier of what drifts with a current
 DRIFTLESS = _note(

@@ -16,6 +16,7 @@ from ..core.data import formats
 from ..core.data.raster import has_brief_rasters, raster_bytes
 from ..core.numerics.memo import remembered
 from ..core.parameters.former_json import modern
+from ..core.parameters.patch_seas import open_sea
 from ..core.parameters.shot import OCEAN_TIME, Moment, Shot
 from ..core.sea.placed_waves import repeating, without_placed
 from ..export.cache.folders import JOB_FILE, read_job
@@ -190,6 +191,8 @@ def differences(shot: Shot, frame: int, settings: OceanSettings, scene: bpy.type
     # no bake of a tile holds what does not repeat, but it may hold a coast beside it
     bare = without_placed if moment.parameters.has_coast else repeating
     seas = (moment.parameters, parameters)
+    if shot.around is not None:  # it holds what does not repeat beside the tile
+        bare = open_sea
     baked, own = (bare(sea.replace(spray=None)).to_dict(brief=True) for sea in seas)
     found = sorted(_different("", baked, own))
     has_clock = shot.animation is not None and OCEAN_TIME in dict(shot.animation.samples)

@@ -19,10 +19,11 @@ from ..core.parameters.spray import Spray
 from ..core.sea.placed_waves import makes_foam, repeating
 from ..core.sea.spray_outlook import breaks_ashore, why_none
 from ..core.spray.columns import COLUMNS
-from ..export.frame_files import SPRAY, files_start
+from ..export.frame_files import SPRAY, WAKES, files_start
 from ..export.ply import told_by_ply
 from ..export.spray import WantedSpray, spray_files
-from .patch_points import files_of
+from .patch_objects import has_wakes_to_bake
+from .patch_points import files_of, has_points
 from .plan import camera_place, camera_surface_of, scene_camera_place
 from .settings import OceanSettings, settings_of
 from .units import metres_per_unit
@@ -85,7 +86,7 @@ def _baked_in(folder: Path, name: str, stored: str, _changed: int) -> BakedSpray
 def spray_to_bake(ocean: bpy.types.Object, scene: bpy.types.Scene) -> WantedSpray | None:
     """The spray that a bake of an ocean makes; None where there is none."""
     parameters = settings_of(ocean).to_parameters(scene)
-    if camera_surface_of(ocean) is not None:  # as its shot is
+    if camera_surface_of(ocean) is not None and not has_wakes_to_bake(ocean):  # as its shot is
         parameters = repeating(parameters)
     if parameters.spray is None or why_none(parameters) is not None:
         return None
@@ -94,14 +95,17 @@ def spray_to_bake(ocean: bpy.types.Object, scene: bpy.types.Scene) -> WantedSpra
 
 def left_out(ocean: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[tuple[str, str]]:
     """What throws up spray of an ocean around a camera and is in no bake of it, each with a remedy."""
-    if camera_surface_of(ocean) is None or not settings_of(ocean).use_spray:
+    settings = settings_of(ocean)
+    if camera_surface_of(ocean) is None or not settings.use_spray:
         return
     try:
-        parameters = settings_of(ocean).to_parameters(scene)
+        parameters = settings.to_parameters(scene)
     except ParameterError:
         return  # the ocean tells
-    if makes_foam(parameters):
+    if makes_foam(parameters) and parameters.has_coast:
         yield "bows", "press Back to Live, or mute their layers"
+    elif makes_foam(parameters) and settings.source != "LIVE" and not has_points(settings, WAKES):
+        yield "bows", "bake it again"
     if breaks_ashore(parameters):
         yield "breakers on the coast", "press Back to Live, or remove the camera surface and bake again"
 
@@ -125,15 +129,13 @@ def spray_numbers(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str]:
 
 
 def bake_place(ocean: bpy.types.Object, scene: bpy.types.Scene) -> tuple[float, float] | None:
-    """Where the camera is now around which an ocean of patches or with a coast is shown, m; None for another
-    ocean.
-
-    A bake is without what does not repeat, but a coast that no camera surface shows: one of a single patch
-    has its spray on its tile.
-    """
+    """Where the camera is now around which an ocean of patches, with wakes or with a coast is shown, m; None
+    for another ocean, which has its spray on its tile: a bake is without a coast that a camera surface
+    shows."""
     settings, scale = settings_of(ocean), float(1 / metres_per_unit(scene))
     surface = camera_surface_of(ocean)
     if surface is None:
         has_coast = settings.to_parameters(scene).has_coast
         return scene_camera_place(ocean, scene, scale) if has_coast else None
-    return camera_place(surface, scene, scale) if len(settings.patches) else None
+    is_around = len(settings.patches) or has_wakes_to_bake(ocean)
+    return camera_place(surface, scene, scale) if is_around else None

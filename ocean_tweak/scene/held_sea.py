@@ -71,6 +71,15 @@ def _modifiers_of(item: bpy.types.Object, kind: GroupKind) -> list[bpy.types.Mod
     return [each for each in item.modifiers if each.type == "NODES" and is_of_kind(each.node_group, kind)]
 
 
+def drop(item: bpy.types.Object, kind: GroupKind) -> None:
+    """Remove the modifiers of a kind; that of a library is switched off."""
+    for modifier in _modifiers_of(item, kind):
+        if is_of_library(modifier):
+            set_changed(modifier, show_viewport=False, show_render=False)
+        else:
+            item.modifiers.remove(modifier)
+
+
 def modifier_of(item: bpy.types.Object, kind: GroupKind) -> bpy.types.Modifier:
     """The modifier of a kind, made where there is none. In an override that of the library is replaced, as
     its group is linked."""

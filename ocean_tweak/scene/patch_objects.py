@@ -19,7 +19,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..core import OceanParameters
+from ..core import OceanParameters, ParameterError
 from ..core.data.plain_data import to_plain
 from ..core.masks.noise import ANY_TIME, SeaTime
 from ..core.masks.parameters import Mask
@@ -27,21 +27,24 @@ from ..core.masks.weights import move, weights
 from ..core.numerics.machine import usable_cores
 from ..core.parameters.fingerprint import fingerprint
 from ..core.parameters.patch_seas import Part, parts
-from ..core.sea.placed_waves import placed_fields
+from ..core.sea.placed_waves import placed_fields, placed_waves
 from ..core.statistics.unresolved_slopes import unresolved_slope_variance
 from ..core.synthesis.channels import ADDING, CHANNELS, Channel
-from ..export.frame_files import POINTS
+from ..export.frame_files import POINTS, WAKES, files_start
 from ..nodes.camera_sum import AREA_INPUT, PATCH_INPUTS
 from ..nodes.camera_surface import FOAM_INPUT
 from ..nodes.held import AREA
 from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import DISPLACEMENT, WEIGHT
+from ..nodes.versioned import is_of_kind
+from ..nodes.wake_points import FILES as WAKE_FILES
+from ..nodes.wake_points import WAKE_POINTS
 from . import evaluation, foam_rings, held_sea, patch_averages, patch_points, vertex_attributes
 from .grid_mesh import Grid
 from .ownership import remove_with_meshes
 from .patch_points import Points
 from .plan import COARSE, Plan, camera_surface_of, in_units, in_window, sea_over_bed, surface_modifier
-from .settings import OceanObjectError, is_ocean, link_beside, settings_of
+from .settings import OceanObjectError, is_ocean, link_beside, scene_of, settings_of
 from .vertex_attributes import RealArray
 
 _NUMBER, _MASKS, _AREA, _FOAM = (f"ocean_tweak_{name}" for name in ("patch", "masks", "area", "foam_rings"))
@@ -54,8 +57,21 @@ _WEIGHTS = 256
 def shot_maps(ocean: bpy.types.Object) -> tuple[str, ...]:
     """The maps, besides images, that a bake needs so that everything in the file that shows the ocean
     moves."""
-    is_shown = camera_surface_of(ocean) is not None and len(settings_of(ocean).patches) > 0
-    return (POINTS,) if is_shown else ()
+    if camera_surface_of(ocean) is None:
+        return ()
+    points = (POINTS,) if len(settings_of(ocean).patches) else ()
+    return (*points, WAKES) if has_wakes_to_bake(ocean) else points
+
+
+def has_wakes_to_bake(ocean: bpy.types.Object) -> bool:
+    """Whether a bake holds waves around a camera that do not repeat: not over a bed, which is in none."""
+    if camera_surface_of(ocean) is None:
+        return False
+    try:
+        parameters = settings_of(ocean).to_parameters(scene_of(ocean))
+    except ParameterError:
+        return False  # the ocean tells
+    return not parameters.has_coast and bool(placed_waves(parameters))
 
 
 def patches_of(ocean: bpy.types.Object) -> dict[int, bpy.types.Object]:
@@ -105,7 +121,8 @@ def refresh(
         weighted = _weights(ocean, parameters.domain_size, plan.scale, of_sea, when)
     if surface is not None:
         inputs = {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
-        inputs |= {"Weights": weighted, AREA_INPUT: _refreshed_area(ocean, plan)}
+        wakes = patch_points.points_of(settings_of(ocean), plan, scene, WAKES)
+        inputs |= {"Weights": weighted, AREA_INPUT: _refreshed_area(ocean, plan, wakes)}
         wanted = foam_rings.around(surface, plan, points, scene)
         inputs[FOAM_INPUT] = foam = _foam_object(ocean, wanted is not None)
         modifier = surface_modifier(surface)
@@ -169,7 +186,7 @@ def forget_all() -> None:
 
 
 def are_live(ocean: bpy.types.Object) -> bool:
-    """Whether an ocean has live patches, waves that do not repeat, or foam around a camera."""
+    """Whether an ocean has live patches or waves that do not repeat, or foam around a camera."""
     return shows_area(ocean) or has_foam(ocean) or lack_points(ocean)
 
 
@@ -184,8 +201,8 @@ def has_foam(ocean: bpy.types.Object) -> bool:
 
 
 def shows_area(ocean: bpy.types.Object) -> bool:
-    """Whether waves that do not repeat are shown around a camera."""
-    return any(_AREA in child for child in ocean.children)
+    """Whether live waves that do not repeat are shown around a camera."""
+    return any(_AREA in child and not _reads_files(child) for child in ocean.children)
 
 
 def remove(ocean: bpy.types.Object) -> None:
@@ -270,16 +287,31 @@ def _lost(filling: _Filling, sea: OceanParameters) -> float:
     return max(unresolved_slope_variance(sea) - unresolved_slope_variance(filling.patch), 0.0)
 
 
-def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | None:
-    """The mesh of waves that do not repeat; None if there are none."""
+def _reads_files(item: bpy.types.Object) -> bool:
+    """Whether baked points are what a mesh of waves that do not repeat shows."""
+    return any(
+        each.type == "NODES" and each.show_render and is_of_kind(each.node_group, WAKE_POINTS)
+        for each in item.modifiers
+    )
+
+
+def _refreshed_area(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> bpy.types.Object | None:
+    """The mesh of waves that do not repeat; None if there are none.
+
+    points : the baked ones to read
+    """
     present = next((child for child in ocean.children if _AREA in child), None)
-    if plan.placed is None:
+    if plan.placed is None and points is None:
         remove_with_meshes((present,) if present is not None else ())
         return None
     item = present or _new(ocean, "Area", _AREA, "")
     if item.data.users > 1:  # of a duplicate
         item.data = item.data.copy()
-    if item.data.library is None:
+    if points is not None:
+        _read_area(item, points, "foam" in plan.channels)
+    elif item.data.library is None:
+        assert plan.placed is not None
+        held_sea.drop(item, WAKE_POINTS)
         area = plan.placed.area
         cells = area.resolution - 1
         grid = Grid(area.size * cells / area.resolution * plan.scale, cells, cells)
@@ -289,6 +321,18 @@ def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | N
         _write(item.data, grid, fields, plan, area.corner)
         held_sea.tell(item, AREA, math.floor(plan.frame))
     return item
+
+
+def _read_area(item: bpy.types.Object, points: Points, with_foam: bool) -> None:
+    """Let the mesh of waves that do not repeat read baked points; its own are removed."""
+    if len(item.data.vertices) and item.data.library is None:
+        item.data.clear_geometry()
+        item.data.update_tag()
+    held_sea.drop(item, AREA)
+    files = points.folder + files_start(points.name, WAKES)
+    inputs = {WAKE_FILES: files, "Foam": with_foam, **patch_points.frame_inputs(points)}
+    set_inputs(held_sea.modifier_of(item, WAKE_POINTS), inputs)
+    item.update_tag()
 
 
 def _foam_object(ocean: bpy.types.Object, is_wanted: bool) -> bpy.types.Object | None:

@@ -61,7 +61,7 @@ def points_of(
 ) -> Points | None:
     """The baked points that an ocean with these settings reads; None where it is live or they are missing.
 
-    kind : POINTS or COAST
+    kind : POINTS, COAST or WAKES
     """
     found = files_of(settings)
     if found is None:

@@ -248,13 +248,17 @@ def plan_for(ocean: bpy.types.Object, settings: OceanSettings, scene: bpy.types.
     own = repeating(plan.parameters) if surface is not None else plan.parameters
     if surface is None or own is plan.parameters:
         return plan
-    place = camera_place(surface, scene, plan.scale)
-    size = _AROUND * own.domain_size
-    cells = min(_AROUND * plan.viewport.samples, _AREA_CELLS)
-    cell = size / cells  # a moving camera shows the same samples
-    corner = (cell * round((along - 0.5 * size) / cell) for along in place)
-    area = Area(size + cell, cells + 1, tuple(corner))
+    area = area_around(camera_place(surface, scene, plan.scale), own.domain_size, plan.viewport.samples)
     return dataclasses.replace(plan, parameters=own, placed=Placed(plan.parameters, area))
+
+
+def area_around(place: tuple[float, float], domain_size: float, samples: int) -> Area:
+    """Where waves that do not repeat are shown around a camera at a place in m, of a sea with so many samples
+    along each side of its domain."""
+    size, cells = _AROUND * domain_size, min(_AROUND * samples, _AREA_CELLS)
+    cell = size / cells  # a moving camera shows the same samples
+    x, y = (cell * round((along - 0.5 * size) / cell) for along in place)
+    return Area(size + cell, cells + 1, (x, y))
 
 
 def camera_place(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float) -> tuple[float, float]:

@@ -167,8 +167,9 @@ def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
         return (*around, _live(ocean), *shown, *_readers(ocean, what, bake, floating))
     dry = (*_over_bed(ocean, surface), *_dry(ocean), *_drifting(ocean))
     if surface is not None and patch_objects.shows_area(ocean):
-        reason = f"shows waves of {ocean.name} that do not repeat, which a bake of its tile does not have"
-        return (Need(surface.name, reason, "mute their layers"), *dry)
+        reason = f"shows waves of {ocean.name} that do not repeat, which its bake does not have"
+        again = "mute their layers" if coast_surface.has_bed(ocean) else f"bake {ocean.name} again"
+        return (Need(surface.name, reason, again), *dry)
     if surface is not None and patch_objects.lack_points(ocean):
         reason = f"shows the patches of {ocean.name}, whose bake has no points"
         return (Need(surface.name, reason, f"bake {ocean.name} again"), *dry)
@@ -201,7 +202,7 @@ def _dry(ocean: bpy.types.Object) -> Iterator[Need]:
     if spray.waits_for_bake(ocean, scene):
         yield Need(ocean.name, "has spray, which its bake has not", "bake it again")
     for what, remedy in left_out(ocean, scene):
-        yield Need(ocean.name, f"has spray of {what}, which no bake around a camera has", remedy)
+        yield Need(ocean.name, f"has spray of {what}, which its bake has not", remedy)
 
 
 def _drifting(ocean: bpy.types.Object) -> Iterator[Need]:

@@ -15,12 +15,14 @@ from ..core.data.frames import Frame
 from ..core.data.raster import LARGEST_SIDE
 from ..core.data.validation import changing_fields
 from ..core.parameters.shot import OCEAN_TIME, Animation, Samples, Shot
+from ..core.parameters.surroundings import Surroundings
 from ..core.sea.placed_waves import repeating
 from ..core.spectral.equaliser import GAINS
 from . import coast_surface, handlers, mask_place, patch_objects
 from .animated import clock_of, has_own_time, is_animated, key_each_frame, set_keys, shown_settings
-from .plan import camera_surface_of
+from .plan import area_around, camera_of, camera_place, camera_surface_of
 from .settings import OceanObjectError, settings_of
+from .units import metres_per_unit
 from .view_layers import evaluated, taking_part
 
 #: ends of paths of masks' places
@@ -55,14 +57,61 @@ def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Fra
 
 
 def bake_shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Frame] = ()) -> Shot:
-    """The shot of an ocean's bake: where a camera surface shows what does not repeat, live, without that.
+    """The shot of an ocean's bake. Where a camera surface shows what does not repeat, its tile is without
+    that, and wakes are in the square around the camera.
 
     Raises ParameterError for what is no sea.
     """
     shot = shot_of(item, scene, frames)
     if camera_surface_of(item) is None:
         return shot
+    if patch_objects.has_wakes_to_bake(item):
+        return with_surroundings(shot, item, scene, frames)
     return replace(shot, parameters=repeating(shot.parameters))
+
+
+def with_surroundings(
+    shot: Shot, item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Frame] = ()
+) -> Shot:
+    """The shot of an ocean with the square around its camera, if a bake holds wakes there."""
+    if not patch_objects.has_wakes_to_bake(item):
+        return shot
+    return replace(shot, around=_surroundings(item, scene, frames, shot.parameters))
+
+
+def _surroundings(
+    item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Frame], parameters: OceanParameters
+) -> Surroundings:
+    """Where the camera of an ocean's camera surface is over frames, by default the scene's."""
+    wanted = tuple(frames) or (scene.frame_start, scene.frame_end)
+    first, last = math.floor(min(wanted)), math.ceil(max(wanted))
+    surface, scale = camera_surface_of(item), float(1 / metres_per_unit(scene))
+    cuts = any(marker.camera is not None for marker in scene.timeline_markers)
+    if _rests(item) and _rests(camera_of(surface, scene)) and not cuts:
+        places = [camera_place(surface, scene, scale)]
+    else:
+        places = []
+        for depsgraph in evaluations(scene, range(first, last + 1), item):
+            ocean, camera = (
+                each.evaluated_get(depsgraph).matrix_world for each in (item, camera_of(surface, scene))
+            )
+            x, y, _ = ocean.inverted_safe() @ camera.translation
+            places.append((x / scale, y / scale))
+    areas = [area_around(place, parameters.domain_size, parameters.resolution) for place in places]
+    corners = tuple(area.corner for area in areas)
+    corners = corners[:1] if len(set(corners)) == 1 else corners
+    return Surroundings(areas[0].size, areas[0].resolution, corners, first if len(corners) > 1 else 0)
+
+
+def _rests(item: bpy.types.Object) -> bool:
+    """Whether nothing is seen that moves an object or its parents."""
+    each: bpy.types.Object | None = item
+    while each is not None:
+        is_free = each.animation_data is None and not each.constraints and each.rigid_body is None
+        if not (is_free and each.parent_type == "OBJECT"):
+            return False
+        each = each.parent
+    return True
 
 
 def needed_maps(item: bpy.types.Object) -> tuple[str, ...]:

@@ -24,6 +24,8 @@ from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.spray import FILES as SPRAY_FILES
 from ..nodes.spray import SPRAY
 from ..nodes.versioned import is_of_kind
+from ..nodes.wake_points import FILES as WAKE_FILES
+from ..nodes.wake_points import WAKE_POINTS
 from ..nodes.wet_bed import FILES as BED_FILES
 from ..nodes.wet_bed import WET_BED
 from .settings import OceanObjectError, all_oceans, settings_of
@@ -31,7 +33,7 @@ from .settings import OceanObjectError, all_oceans, settings_of
 _BESIDE = "//"
 
 #: groups whose input has a path where they read files
-_MAYBE_FILES = ((SPRAY, SPRAY_FILES), (COAST, COAST_FILES), (WET_BED, BED_FILES))
+_MAYBE_FILES = ((SPRAY, SPRAY_FILES), (COAST, COAST_FILES), (WET_BED, BED_FILES), (WAKE_POINTS, WAKE_FILES))
 
 
 class Kept(NamedTuple):

@@ -41,6 +41,7 @@ KINDS = {
     "coast": ("nodes.coast", lambda module: module.COAST),
     "wet-bed": ("nodes.wet_bed", lambda module: module.WET_BED),
     "area": ("nodes.held", lambda module: module.AREA),
+    "wake-points": ("nodes.wake_points", lambda module: module.WAKE_POINTS),
     "dry": ("nodes.held", lambda module: module.DRY),
     "no-bows": ("nodes.held", lambda module: module.NO_BOWS),
     "driftless": ("nodes.held", lambda module: module.DRIFTLESS),

@@ -271,19 +271,19 @@ def test_speed_is_in_metres_whatever_the_units(ocean, ship, select, empty_scene,
     assert math.isfinite(wake.area_size)
 
 
-def test_a_bake_is_of_the_sea_and_wakes_go_on_over_it(ocean, ship, select, bake, extension, empty_scene):
-    """No image that repeats can hold them: they stay live, and the bake differs in nothing."""
+def test_over_a_bake_of_the_tile_alone_wakes_go_on(ocean, ship, select, bake, extension, empty_scene):
+    """No image that repeats can hold them: they stay live, and another bake has them beside the tile."""
     select(ship)
     bpy.ops.object.ocean_tweak_wake()
     shots = extension("scene.shots")
     shot = shots.bake_shot_of(ocean, empty_scene)
-    assert [layer.muted for layer in shot.parameters.layers] == [False, True]
-    assert not shots.shot_of(ocean, empty_scene).parameters.layers[1].muted
-    job = extension("export.cache.job").Job("sea", "0" * 8, shot, ("disp",), frames=(1, 2))
-    assert job.maps == ("disp",)
+    assert shots.needed_maps(ocean) == ("wakes",)
+    job = extension("export.cache.job").Job("sea", "0" * 8, shot, ("disp", "wakes"), frames=(1, 2))
+    assert job.maps == ("disp", "wakes")
     found = extension("scene.bake_state").differences(shot, 1, ocean.ocean_tweak, empty_scene)
     assert found == []
-    sequence = bake(shot.parameters, 1, 2)
+    tile = extension("core.sea.placed_waves").without_placed(shot.parameters)
+    sequence = bake(tile, 1, 2)
     ocean.ocean_tweak.use_sequence(sequence.directory, sequence.name, sequence.frames)
     empty_scene.frame_set(2)
     area = next(child for child in ocean.children if child.name.endswith("Area"))
@@ -291,7 +291,9 @@ def test_a_bake_is_of_the_sea_and_wakes_go_on_over_it(ocean, ship, select, bake,
     area.data.attributes["displacement"].data.foreach_get("vector", moved)
     assert moved.reshape(-1, 3)[:, 2].min() < -0.5
     (need,) = extension("scene.portability").needs_of(ocean)  # on a machine without the extension
-    assert "shows waves of Ocean that do not repeat" in need.text
+    assert (
+        "shows waves of Ocean that do not repeat, which its bake does not have: bake Ocean again" in need.text
+    )
 
 
 def lofted(scene, name, half_beam, keel=1.5, above=1.0, upside=1.0):

@@ -17,6 +17,7 @@ from ..data.frames import Frame, frame_label
 from .former_json import former
 from .ocean_parameters import OceanParameters
 from .shot import Shot, time_text
+from .surroundings import KEY
 
 
 def fingerprint(data: object) -> str:
@@ -28,9 +29,10 @@ def fingerprint(data: object) -> str:
 def hashed(sea: Shot | OceanParameters) -> dict[str, Any]:
     """The plain data that fingerprints are computed from, in the form of format version 1.
 
-    Spray is not included, as it changes no field.
+    Neither spray, which changes no field, nor the square around a camera is included.
     """
-    return {name: value for name, value in former(sea.to_dict()).items() if name != "spray"}
+    left_out = "spray", KEY
+    return {name: value for name, value in former(sea.to_dict()).items() if name not in left_out}
 
 
 def shot_fingerprint(shot: Shot) -> str:
@@ -38,11 +40,14 @@ def shot_fingerprint(shot: Shot) -> str:
     return fingerprint({"synthesis": formats.SYNTHESIS, "shot": hashed(shot)})
 
 
-def frame_fingerprint(shot: Shot, frame: Frame, area: Mapping[str, Any] | None = None) -> str:
+def frame_fingerprint(
+    shot: Shot, frame: Frame, area: Mapping[str, Any] | None = None, around: Mapping[str, Any] | None = None
+) -> str:
     """The fingerprint of one frame, from its parameters and time. Raises ParameterError for a frame outside
     the animation.
 
     area : plain data of the square that is sampled; None for the sea's own tile
+    around : of that in which there are waves besides that do not repeat; None for none
     """
     moment = shot.at(frame)
     return fingerprint(
@@ -53,5 +58,6 @@ def frame_fingerprint(shot: Shot, frame: Frame, area: Mapping[str, Any] | None =
             "time": time_text(moment.time),
             "rate": moment.rate,
             **({} if area is None else {"area": area}),
+            **({} if around is None else {KEY: around}),
         }
     )

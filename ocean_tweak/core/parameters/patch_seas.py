@@ -21,6 +21,8 @@ _FEWEST, _MOST = 16, 8192
 PARTS = "parts"
 #: and what is over the bed of a sea with a coast, besides the tile of the open sea
 OVER_BED = "coast"
+#: the same for waves that do not repeat, in the square around a shot's camera
+AROUND = "wakes"
 
 
 def rotations(parameters: OceanParameters) -> tuple[float, ...]:

@@ -30,6 +30,8 @@ from ..spectral.equaliser import GAINS
 from ..waves.kinds import KINDS
 from .current import Current
 from .ocean_parameters import OceanParameters, parse_json
+from .surroundings import KEY as _AROUND
+from .surroundings import Surroundings
 
 #: path of the ocean time in seconds, if it does not simply follow the frames
 OCEAN_TIME = "ocean_time"
@@ -176,11 +178,14 @@ class Animation:
 class Shot:
     """A sea and its animation.
 
+    around : where waves are baked that do not repeat; None where they are not
+
     Raises ParameterError for an animation that does not fit the sea.
     """
 
     parameters: OceanParameters
     animation: Animation | None = None
+    around: Surroundings | None = None
 
     def __post_init__(self) -> None:
         if self.animation is not None and self.parameters.loop_duration is not None:
@@ -288,12 +293,13 @@ class Shot:
         """The same shot without spray."""
         if self.parameters.spray is None:
             return self
-        return Shot(self.parameters.replace(spray=None), self.animation)
+        return replace(self, parameters=self.parameters.replace(spray=None))
 
     def to_dict(self) -> dict[str, Any]:
-        """The parameters' plain data, with the animation if there is one."""
-        animated = {_KEY: self.animation.to_dict()} if self.animation is not None else {}
-        return {**self.parameters.to_dict(), **animated}
+        """The parameters' plain data, with the animation and the square around a camera if there are any."""
+        belongings = {_KEY: self.animation, _AROUND: self.around}
+        told = {key: each.to_dict() for key, each in belongings.items() if each is not None}
+        return {**self.parameters.to_dict(), **told}
 
     def to_json(self, indent: int | None = 2) -> str:
         """JSON text from which `from_json` restores an equal shot."""
@@ -302,10 +308,12 @@ class Shot:
     @classmethod
     def from_dict(cls, data: object) -> Shot:
         """A shot from plain data. Raises ParameterError naming what is wrong."""
-        if not isinstance(data, dict) or _KEY not in data:
+        if not isinstance(data, dict):
             return cls(OceanParameters.from_dict(data))
-        sea = {key: value for key, value in data.items() if key != _KEY}
-        return cls(OceanParameters.from_dict(sea), Animation.from_dict(data[_KEY]))
+        sea = {key: value for key, value in data.items() if key not in (_KEY, _AROUND)}
+        around = Surroundings.from_dict(data[_AROUND]) if _AROUND in data else None
+        animation = Animation.from_dict(data[_KEY]) if _KEY in data else None
+        return cls(OceanParameters.from_dict(sea), animation, around)
 
     @classmethod
     def from_json(cls, text: str) -> Shot:

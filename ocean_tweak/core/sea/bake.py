@@ -8,6 +8,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
@@ -16,14 +17,18 @@ import numpy as np
 from ..data.frames import Frame
 from ..foam.model import Whitecaps
 from ..numerics.memo import MEMO
-from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch_seas import OVER_BED, PARTS, open_sea
+from ..parameters.patch_seas import AROUND, OVER_BED, PARTS, open_sea
 from ..parameters.shot import Moment, Shot
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
-from .memory import check_memory, memory_need, remedy_for
+from ..waves.contribution import MemoryNeed
+from .memory import A_SAMPLE_AROUND, check_memory, memory_need, remedy_for
 from .ocean import Ocean
 from .over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed, with_whitecaps
+from .placed_waves import placed_fields, placed_foam, without_placed
 from .regions import TILE, Area, Tile
+
+#: outputs that are no fields of a tile
+_BESIDE = frozenset((PARTS, OVER_BED, AROUND))
 
 
 class FrameSink(Protocol):
@@ -32,11 +37,12 @@ class FrameSink(Protocol):
     @property
     def outputs(self) -> frozenset[str]:
         """The fields that a frame must have; with PARTS, also the summable fields of each part, and with
-        OVER_BED those over the bed, where the tile is that of the open sea."""
+        OVER_BED those over the bed, where the tile is that of the open sea, and with AROUND those of waves
+        that do not repeat, without which the tile then is."""
 
     def write(self, frame: Frame, fields: SurfaceFields, *others: SurfaceFields) -> tuple[Path, ...]:
-        """Store a frame's fields: those of the first patch, of the others, of the parts and over the bed.
-        Returns where."""
+        """Store a frame's fields: those of the first patch, of the others, of the parts, over the bed
+        and around the camera. Returns where."""
 
 
 class BakedFrame(NamedTuple):
@@ -54,13 +60,15 @@ class ShotSeas:
     """Computes the surfaces of a shot's frames on one thread; fastest for consecutive frames.
 
     on : where to compute them: on the tile of each patch, or in an area for their sum
-    with_bed : whether OVER_BED may be requested; the tile is then that of the open sea
+    outputs : that will be requested. With OVER_BED the tile is that of the open sea, with AROUND it is
+        without waves that do not repeat
     """
 
-    def __init__(self, shot: Shot, on: Tile | Area = TILE, with_bed: bool = False) -> None:
+    def __init__(self, shot: Shot, on: Tile | Area = TILE, outputs: frozenset[str] = frozenset()) -> None:
         self.shot = shot
         self.on = on
-        self._with_bed = with_bed
+        self._with_bed = OVER_BED in outputs
+        self._is_around = AROUND in outputs
         self._sea: Ocean | None = None
         self._whole: Ocean | None = None
 
@@ -69,6 +77,8 @@ class ShotSeas:
         parameters = self.shot.at(frame).parameters
         if self._with_bed:
             parameters = open_sea(parameters)
+        if self._is_around:
+            parameters = without_placed(parameters)
         if self._sea is None or self._sea.parameters != parameters:
             self._sea = Ocean(parameters, workers=1)
         return self._sea
@@ -89,6 +99,18 @@ class ShotSeas:
             if name in CHANNELS and CHANNELS[name].is_rate:
                 fields[name] = fields[name] * np.float32(moment.rate)
         return SurfaceFields(float(moment.time), fields)
+
+    def around(self, frame: Frame) -> SurfaceFields:
+        """ADDING and foam in a frame, of the waves that do not repeat, in the square around the camera."""
+        moment, square = self.shot.at(frame), self.shot.around
+        assert square is not None
+        area = Area(square.size, square.resolution, square.corner(frame))
+        fields = placed_fields(moment.parameters, area, moment.time)
+        for name in ADDING if moment.rate != 1.0 else ():
+            if CHANNELS[name].is_rate:
+                fields[name][...] *= moment.rate
+        foam = placed_foam(moment.parameters, area, moment.time)
+        return fields.including(SurfaceFields(fields.time, foam._asdict()))
 
     def with_whitecaps(self, frame: Frame, over_bed: SurfaceFields, tile: SurfaceFields) -> SurfaceFields:
         """What is over the bed, with the whitecaps of the open sea's tile."""
@@ -112,16 +134,18 @@ class ShotSeas:
             sea.prepare(lambda done: tell(frame, f"waves over the coast's bed: {100.0 * done:.0f} %"))
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
-        """Fields of each of its seas in a frame, ADDING of each part if PARTS is requested, and what is over
-        the bed if OVER_BED is, without the open sea's whitecaps.
+        """Fields of each of its seas in a frame, ADDING of each part if PARTS is requested, what is over the
+        bed if OVER_BED is, without the open sea's whitecaps, and what is around the camera if AROUND is.
 
         Velocity is per second of the shot.
         """
         outputs = frozenset(outputs)
-        made = self._made(frame, self.seas(frame), outputs - {PARTS, OVER_BED}, self.on)
+        made = self._made(frame, self.seas(frame), outputs - _BESIDE, self.on)
         if PARTS in outputs:
             made += self._made(frame, self.sea(frame).parts, ADDING, TILE)
-        return (*made, self.over_bed(frame)) if OVER_BED in outputs else made
+        if OVER_BED in outputs:
+            made += (self.over_bed(frame),)
+        return (*made, self.around(frame)) if AROUND in outputs else made
 
     def _made(
         self, frame: Frame, seas: tuple[Ocean, ...], outputs: frozenset[str], on: Tile | Area
@@ -163,16 +187,16 @@ def bake(
     Raises MemoryError before the first frame if the machine has too little memory, and ValueError for fields
     that separate patches do not have.
     """
-    _check(shot.parameters, sink, workers, on)
+    _check(shot, sink, workers, on)
     with_bed = OVER_BED in sink.outputs
-    with_memory = ShotSeas(shot, on, with_bed)
+    with_memory = ShotSeas(shot, on, sink.outputs)
     wanted = _of_memory(shot, sink.outputs, on)
     own = threading.local()
 
     def make(frame: Frame, started: float, foam: SurfaceFields | None) -> BakedFrame:
         started += time.perf_counter()
         if not hasattr(own, "surfaces"):
-            own.surfaces = ShotSeas(shot, on, with_bed)
+            own.surfaces = ShotSeas(shot, on, sink.outputs)
         fields, *others = own.surfaces.frames(frame, sink.outputs - wanted)
         if foam is not None:
             fields = fields.including(foam)
@@ -182,7 +206,7 @@ def bake(
 
     under_way: deque[Future[BakedFrame]] = deque()
     # frames are in ascending order: keep what they share, and drop the seas of past frames
-    need = memory_need(shot.parameters, sink.outputs, on=on)
+    need = _need(shot, sink.outputs, on)
     with MEMO.at_most(need.state + workers * need.surface), ThreadPoolExecutor(workers) as pool:
         try:
             for frame in frames:
@@ -218,16 +242,25 @@ def _foam(
     return surfaces.frame(frame, wanted)
 
 
-def _check(parameters: OceanParameters, sink: FrameSink, workers: int, on: Tile | Area) -> None:
+def _need(shot: Shot, outputs: frozenset[str], on: Tile | Area) -> MemoryNeed:
+    """Memory for the frames of a shot."""
+    need = memory_need(shot.parameters, outputs, on=on)
+    if AROUND not in outputs or shot.around is None:
+        return need
+    return replace(need, surface=need.surface + A_SAMPLE_AROUND * shot.around.resolution**2)
+
+
+def _check(shot: Shot, sink: FrameSink, workers: int, on: Tile | Area) -> None:
     """Raise for a shot that cannot be baked, or not on this machine."""
+    parameters = shot.parameters
     is_cascade = parameters.is_cascade and on == TILE
     if is_cascade and parameters.is_masked:
         raise ValueError(
             "masks: they lie over the sea, not over its patches, which repeat: merge the patches"
         )
-    if is_cascade and not sink.outputs <= {*ADDING, PARTS, OVER_BED}:
-        others = ", ".join(sorted(sink.outputs - {*ADDING, PARTS, OVER_BED}))
+    if is_cascade and not sink.outputs <= ADDING | _BESIDE:
+        others = ", ".join(sorted(sink.outputs - ADDING - _BESIDE))
         raise ValueError(f"outputs = {others}: do not add up over patches; bake {', '.join(sorted(ADDING))}")
-    need = memory_need(parameters, sink.outputs, on=on).peak(workers)
+    need = _need(shot, sink.outputs, on).peak(workers)
     samples = on.resolution if isinstance(on, Area) else parameters.resolution
     check_memory(need, f"Baking {samples}² samples with {workers} workers", remedy_for(parameters, need))

@@ -11,7 +11,7 @@ from ..data.printable import readable_bytes
 from ..numerics.machine import usable_memory
 from ..numerics.memo import MEMO, VARIABLE
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch_seas import OVER_BED, PARTS, merged_bands, open_sea, parts
+from ..parameters.patch_seas import AROUND, OVER_BED, PARTS, merged_bands, open_sea, parts
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, memory_groups
 from ..synthesis.transforms import term
 from ..waves.coast.ground import Ground
@@ -19,6 +19,7 @@ from ..waves.coast.mesh import places_over
 from ..waves.contribution import Gives, MemoryNeed
 from ..waves.kinds import KINDS
 from .coast_pictures import most_frequencies
+from .placed_waves import without_placed
 from .regions import TILE, Area, Tile
 
 #: temporary float64 half-plane arrays while the initial state is computed
@@ -39,6 +40,9 @@ _OVER_BED = 160
 #: and a place of the mesh over it, read and written
 _A_PLACE = 600
 
+#: bytes a sample of the square around a camera: its place, and components of waves that do not repeat there
+A_SAMPLE_AROUND = 400
+
 #: what lowers the memory of a sea, and that of a coast
 _FEWER_SAMPLES = "lower the resolution or the number of workers"
 _COARSER_COAST = "set a larger coast.step or coast.shortest_wavelength"
@@ -56,6 +60,8 @@ def memory_need(
     """Memory that a sea needs for the requested outputs; a sea of several patches holds all of them at
     once."""
     outputs = frozenset(outputs)
+    if AROUND in outputs:
+        return _need_beside_placed(parameters, outputs - {AROUND}, precision)
     if OVER_BED in outputs:
         return _need_over_bed(parameters, outputs - {OVER_BED}, precision)
     if PARTS in outputs:
@@ -87,6 +93,19 @@ def _need_with_parts(parameters: OceanParameters, outputs: frozenset[str], preci
     """Memory of the sea and of each of its parts, which are kept as well."""
     needs = [memory_need(parameters, outputs, precision)]
     needs += [memory_need(part.parameters, ADDING, precision) for part in parts(parameters)]
+    return MemoryNeed(
+        sum(need.state for need in needs),
+        max(need.building for need in needs),
+        sum(need.surface for need in needs),
+    )
+
+
+def _need_beside_placed(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
+    """Memory of the sea without waves that do not repeat, and of these."""
+    real = 4 if precision == "single" else 8
+    kinds = (kind for kind in KINDS if Gives.FIELDS in kind.gives and parameters.active(kind))
+    needs = [memory_need(without_placed(parameters), outputs, precision)]
+    needs += (kind.memory(parameters, real, True) for kind in kinds)
     return MemoryNeed(
         sum(need.state for need in needs),
         max(need.building for need in needs),

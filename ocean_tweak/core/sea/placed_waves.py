@@ -207,6 +207,15 @@ def adding_fields(sums: Summed, shape: tuple[int, ...]) -> dict[str, RealArray]:
     return fields
 
 
+def placed_foam(sea: OceanParameters, area: Area, time: float | Fraction) -> Whitecaps:
+    """The foam of these layers only, in an area, (n, n) float32, fading to 0 at its outermost samples."""
+    x, y = (places.ravel() for places in area.rest_positions())
+    none = np.zeros(x.size, np.float32)
+    foam, breaking, age = with_own_foam(sea, Whitecaps(none, none, none), x, y, time)
+    share, shape = _rim(area).value.astype(np.float32), (area.resolution, area.resolution)
+    return Whitecaps(*(field.reshape(shape) for field in (foam * share, breaking * share, age)))
+
+
 def _rim(area: Area) -> Weights:
     """1 inside, 0 at the outermost samples, and smooth between."""
     along = np.arange(area.resolution) / max(area.resolution - 1, 1)

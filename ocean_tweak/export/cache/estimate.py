@@ -23,11 +23,12 @@ from ...core.data.printable import readable_bytes
 from ...core.foam.model import LATTICE_RATE
 from ...core.foam.threshold import foam_outlook
 from ...core.numerics.machine import usable_cores, usable_memory
-from ...core.parameters.patch_seas import OVER_BED, PARTS, open_sea, parts
+from ...core.parameters.patch_seas import AROUND, OVER_BED, PARTS, open_sea, parts
 from ...core.parameters.shot import OCEAN_TIME, Shot
 from ...core.sea.bake import ShotSeas
-from ...core.sea.memory import TABLES, ground_of
+from ...core.sea.memory import A_SAMPLE_AROUND, TABLES, ground_of, memory_need
 from ...core.sea.over_bed import mesh_over_bed, over_bed
+from ...core.sea.placed_waves import without_placed
 from ...core.sea.shot_spray import ShotSpray
 from ...core.spray.columns import BYTES_IN_FILE
 from ...core.spray.particles import longest_life
@@ -149,14 +150,18 @@ def process_memory(job: Job) -> int:
     parameters = job.shot.parameters
     if job.area is not None:
         return _memory_of_area(job)
-    need = Ocean(parameters).memory(job.outputs - OF_MEMORY)
+    need = memory_need(parameters, job.outputs - OF_MEMORY)
     parameters = open_sea(parameters)
+    if AROUND in job.outputs:
+        parameters = without_placed(parameters)
     sides = [patch.resolution for patch in parameters.patches if parameters.is_cascade]
     samples = max([*sides, parameters.resolution]) ** 2
     writing = _writing(job) * samples
     if PARTS in job.outputs:
         writing = max(writing, _POINTS * max(part.parameters.resolution for part in parts(parameters)) ** 2)
     making = need.surface + writing
+    if job.shot.around is not None:
+        making += A_SAMPLE_AROUND * job.shot.around.resolution**2
     if job.outputs & OF_MEMORY:  # made for the next frame meanwhile
         own = parameters.foam.resolution or parameters.resolution
         coarse = Ocean(parameters.at_resolution(own)).memory({"cusp"})
@@ -181,11 +186,10 @@ def _frame_bytes(folder: Path, job: Job, frame: Frame) -> int:
     trial = _at(job, _TRIAL)
     scale = (job.resolution / trial.resolution) ** 2
     with nothing_kept():
-        fields = _seas(trial).frames(frame, trial.outputs - {PARTS, OVER_BED})
+        fields = _seas(trial).frames(frame, trial.outputs - {PARTS, OVER_BED, AROUND})
     images = sum(_room(len(data) * scale) for data in _images(folder, trial, frame, fields))
-    coast = job.coast(folder, frame)
-    others = [*job.points(folder, frame), *(() if coast is None else (coast,))]
-    return images + sum(_room(each.bytes) for each in others)
+    others = (*job.points(folder, frame), job.coast(folder, frame), job.wakes(folder))
+    return images + sum(_room(each.bytes) for each in others if each is not None)
 
 
 class _Costs(NamedTuple):
@@ -327,10 +331,12 @@ def _encode(folder: Path, job: Job, frame: Frame, fields: Sequence[SurfaceFields
     """All that is done with a frame's fields but for the disk."""
     for data in _images(folder, job, frame, fields):
         hashlib.sha256(data).digest()
-    of_parts = fields[len(job.sequences(folder, frame)) :]
-    for points, of_part in zip(job.points(folder, frame), of_parts, strict=True):
+    beside, wakes = fields[len(job.sequences(folder, frame)) :], job.wakes(folder)
+    for points, of_part in zip(job.points(folder, frame), beside, strict=False):
         for _, values in points.values(of_part):
             hashlib.sha256(values.data).digest()
+    if wakes is not None:
+        hashlib.sha256(wakes.values(frame, beside[-1]).data).digest()
 
 
 def cpu_seconds(work: Callable[[], object]) -> float:
@@ -347,7 +353,7 @@ def _images(folder: Path, job: Job, frame: Frame, fields: Sequence[SurfaceFields
 
 
 def _seas(job: Job) -> ShotSeas:
-    return ShotSeas(job.shot, job.on, OVER_BED in job.outputs)
+    return ShotSeas(job.shot, job.on, job.outputs)
 
 
 def _changes(shot: Shot) -> bool:
@@ -376,7 +382,7 @@ def _at(job: Job, most: int, is_timed: bool = False) -> Job:
         few = few.replace(foam=replace(foam, half_life=min(foam.half_life, _SHORT_FOAM)))
         if samples < parameters.resolution:  # else the bake itself goes on with these waves
             few = few.replace(seed=_new_seed())
-    return replace(job, shot=Shot(few, job.shot.animation), area=area)
+    return replace(job, shot=replace(job.shot, parameters=few), area=area)
 
 
 def _samples(job: Job) -> int:

@@ -16,6 +16,7 @@ from itertools import chain, combinations, product
 from pathlib import Path
 
 from ...core.data import formats
+from ...core.data.errors import ParameterError
 from ...core.data.frames import Frame, frame_label
 from ...core.parameters.shot import Shot
 from ...core.sea.regions import told_area
@@ -141,10 +142,13 @@ def recovered_job(folder: Path) -> Job:
         for maps in _all_choices(maps_for(shot.parameters, area)):
             versions = (range(newest, 0, -1) for newest in (formats.FOAM, formats.WINDROWS, formats.ENCODING))
             for foam, windrows, encoding in product(*versions):
-                job = Job(
-                    name, uid, shot, maps, compression, area=area, foam=foam, windrows=windrows,
-                    encoding=encoding,
-                )  # fmt: skip
+                try:
+                    job = Job(
+                        name, uid, shot, maps, compression, area=area, foam=foam, windrows=windrows,
+                        encoding=encoding,
+                    )  # fmt: skip
+                except ParameterError:  # waves that do not repeat, of which no image tells the place
+                    continue
                 if job.fingerprint[:8] == match[2]:
                     return job
     raise CacheError(problem)

@@ -7,7 +7,7 @@ import platform
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -21,17 +21,18 @@ from ...core.data.printable import shown
 from ...core.foam.threshold import has_windrows
 from ...core.parameters.fingerprint import fingerprint, frame_fingerprint, hashed
 from ...core.parameters.ocean_parameters import OceanParameters
-from ...core.parameters.patch_seas import OVER_BED, PARTS, open_sea, parts
+from ...core.parameters.patch_seas import AROUND, OVER_BED, PARTS, open_sea, parts
 from ...core.parameters.shot import Shot
 from ...core.sea.memory import ground_of
-from ...core.sea.placed_waves import check_repeats
+from ...core.sea.placed_waves import check_repeats, placed_waves, without_placed
 from ...core.sea.regions import TILE, Area, Tile, told_area
 from ...core.synthesis.channels import ADDING, MAPS, MOVING_MAP, OF_MEMORY, SurfaceFields, channels_of
 from ...core.waves.coast.mesh import coast_mesh
 from ..coast_points import CoastSequence
 from ..exr import COMPACT, COMPRESSION_ERROR, ExrSequence, halved_maps
-from ..frame_files import BAKED, COAST, POINTS, frame_file
+from ..frame_files import BAKED, COAST, POINTS, WAKES, frame_file
 from ..points import PointSequence
+from ..wake_points import WakeSequence
 
 _SEAL = "sha256"
 
@@ -83,7 +84,9 @@ class Job:
             raise ParameterError("uid", self.uid, "must be 1 to 32 letters and digits")
         # it does not affect the images: see `export.spray`
         object.__setattr__(self, "shot", self.shot.without_spray)
-        _check_maps(self.maps, self.shot.parameters, self.area)
+        _check_maps(self.maps, self.shot, self.area)
+        if WAKES not in self.maps and self.shot.around is not None:
+            object.__setattr__(self, "shot", replace(self.shot, around=None))
         if not self.outputs & OF_MEMORY:
             object.__setattr__(self, "foam", formats.FOAM)
         if not self._has_windrows:
@@ -102,6 +105,7 @@ class Job:
                 "maps": list(self.maps),
                 "compression": self.compression,
                 **self._told_area(),
+                **({} if self.shot.around is None else {"around": self.shot.around.to_dict()}),
                 **self._told_foam(),
                 **self._told_encoding(),
             }
@@ -109,7 +113,9 @@ class Job:
 
     def frame_fingerprint(self, frame: Frame) -> str:
         """SHA-256 of everything that a frame depends on."""
-        return frame_fingerprint(self.shot, frame, **self._told_area())
+        around = self.shot.around
+        square = None if around is None else around.in_frame(frame).to_dict()
+        return frame_fingerprint(self.shot, frame, **self._told_area(), around=square)
 
     def check_foam(self) -> None:
         """Raise CacheError if its frames have foam of an earlier version, which can no longer be computed."""
@@ -161,8 +167,9 @@ class Job:
 
     @property
     def outputs(self) -> frozenset[str]:
-        """The outputs needed for its maps; PARTS for points, OVER_BED for a coast."""
-        own = {marker for name, marker in ((POINTS, PARTS), (COAST, OVER_BED)) if name in self.maps}
+        """The outputs needed for its maps; PARTS for points, OVER_BED for a coast, AROUND for wakes."""
+        markers = (POINTS, PARTS), (COAST, OVER_BED), (WAKES, AROUND)
+        own = {marker for name, marker in markers if name in self.maps}
         return frozenset(own) | channels_of(self.images)
 
     @property
@@ -196,6 +203,11 @@ class Job:
         sea = self.shot.at(frame).parameters
         return CoastSequence(folder, self.name, coast_mesh(ground_of(sea), sea.domain_size, sea.resolution))
 
+    def wakes(self, folder: Path) -> WakeSequence | None:
+        """The writer for waves that do not repeat; None if they are not baked."""
+        around = self.shot.around
+        return None if WAKES not in self.maps or around is None else WakeSequence(folder, self.name, around)
+
     def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
         """The image writer for a frame of one patch or of an area. Raises CacheError for several patches."""
         sequence, *others = self.sequences(folder, frame)
@@ -209,7 +221,8 @@ class Job:
         images = [(name, sequence.path(frame, name).name) for sequence in sequences for name in self.images]
         points = [path.name for sequence in self.points(folder, frame) for path in sequence.paths(frame)]
         coast = [] if COAST not in self.maps else [(COAST, frame_file(self.name, COAST, frame))]
-        return [*images, *((POINTS, name) for name in points), *coast]
+        wakes = [] if WAKES not in self.maps else [(WAKES, frame_file(self.name, WAKES, frame))]
+        return [*images, *((POINTS, name) for name in points), *coast, *wakes]
 
     def write(self, folder: Path, frame: Frame, fields: Sequence[SurfaceFields]) -> Iterator[Path]:
         """Write a frame's files in the order of `files`. Yields each path once it is complete.
@@ -220,12 +233,12 @@ class Job:
         for sequence, own in zip(sequences, fields, strict=False):
             for name in self.images:
                 yield sequence.write_map(frame, own, name)
-        coast = self.coast(folder, frame)
-        of_parts = fields[len(sequences) : None if coast is None else -1]
-        for points, own in zip(self.points(folder, frame), of_parts, strict=True):
-            yield from points.write(frame, own)
-        if coast is not None:
-            yield coast.write(frame, fields[-1])
+        points, others = self.points(folder, frame), (self.coast(folder, frame), self.wakes(folder))
+        of_others = fields[len(sequences) + len(points) :]
+        for of_part, own in zip(points, fields[len(sequences) :], strict=False):
+            yield from of_part.write(frame, own)
+        for other, own in zip((each for each in others if each is not None), of_others, strict=True):
+            yield other.write(frame, own)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in `bake.json`."""
@@ -289,19 +302,30 @@ def maps_for(parameters: OceanParameters, area: Area | None = None) -> tuple[str
         return tuple(MAPS)
     images = tuple(name for name in MAPS if not parameters.is_cascade or ADDING.issuperset(MAPS[name]))
     points = (POINTS,) if parameters.patches else ()
-    return (*images, *points, *((COAST,) if parameters.has_coast else ()))
+    coast = (COAST,) if parameters.has_coast else ()
+    return (*images, *points, *coast, *((WAKES,) if placed_waves(parameters) else ()))
 
 
-def _check_maps(maps: tuple[str, ...], parameters: OceanParameters, area: Area | None) -> None:
+_NOT_IN_AREAS = {
+    POINTS: "belong to patches, which repeat: an area has none",
+    COAST: "is the mesh over the bed: an area shows the bed by itself",
+    WAKES: "are beside a tile: an area shows them by itself",
+}
+
+
+def _check_maps(maps: tuple[str, ...], shot: Shot, area: Area | None) -> None:
+    parameters = shot.parameters
     if area is not None:
-        if POINTS in maps:
-            raise ParameterError("maps", POINTS, "belong to patches, which repeat: an area has none")
-        if COAST in maps:
-            raise ParameterError("maps", COAST, "is the mesh over the bed: an area shows the bed by itself")
+        for name, why in _NOT_IN_AREAS.items():
+            if name in maps:
+                raise ParameterError("maps", name, why)
         return
     if COAST in maps and not parameters.has_coast:
         raise ParameterError("maps", COAST, "needs a sea with a coast, and this one has none")
-    check_repeats(open_sea(parameters) if COAST in maps else parameters)
+    if WAKES in maps:
+        _check_wakes(shot)
+    bare = open_sea(parameters) if COAST in maps else parameters
+    check_repeats(without_placed(bare) if WAKES in maps else bare)
     if parameters.is_cascade and parameters.is_masked:
         raise ParameterError(
             "merged_resolution", parameters.merged_resolution,
@@ -318,6 +342,19 @@ def _check_maps(maps: tuple[str, ...], parameters: OceanParameters, area: Area |
                 f"{', '.join(maps_for(parameters))}, from whose sums normals and cusps are made, "
                 "or merge the patches on one grid with merged_resolution=1024",
             )  # fmt: skip
+
+
+def _check_wakes(shot: Shot) -> None:
+    if not placed_waves(shot.parameters):
+        raise ParameterError("maps", WAKES, "needs a sea with wakes, and this one has none")
+    if shot.parameters.has_coast:
+        raise ParameterError("maps", WAKES, "are of the open sea: over a bed bake an area")
+    if shot.around is None:
+        raise ParameterError(
+            "maps", WAKES,
+            "needs the place where they are seen: give the file "
+            '"around": {"size": 512, "resolution": 512, "corners": [[-256, -256]]}',
+        )  # fmt: skip
 
 
 def made_with() -> dict[str, str]:

@@ -13,7 +13,6 @@ from ...core import Ocean
 from ...core.data.frames import Frame
 from ...core.data.plain_data import to_plain
 from ...core.data.printable import printable
-from ...core.parameters.patch_seas import OVER_BED
 from ...core.parameters.shot import Moment
 from ...core.sea.bake import ShotSeas
 from ...core.sea.regions import TILE, Area, Tile
@@ -36,7 +35,7 @@ _FLAT = 1e-6
 
 def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]:
     """Read each frame back: record, hashes, header, finite pixels, wave height."""
-    surfaces = ShotSeas(job.shot, job.on, OVER_BED in job.outputs)
+    surfaces = ShotSeas(job.shot, job.on, job.outputs)
     spray = baked_spray(folder, job.name, job.shot)
     for finding in inspect_all(folder, job, frames):
         frame = finding.frame
@@ -101,9 +100,9 @@ def _points_problem(job: Job, folder: Path, frame: Frame) -> str:
     try:
         for sequence in job.points(folder, frame):
             sequence.check(frame)
-        coast = job.coast(folder, frame)
-        if coast is not None:
-            coast.check(frame)
+        for beside in (job.coast(folder, frame), job.wakes(folder)):
+            if beside is not None:
+                beside.check(frame)
     except PlyError as error:
         return str(error)
     return ""

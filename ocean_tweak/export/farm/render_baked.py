@@ -249,13 +249,14 @@ def show_points(modifier: bpy.types.NodesModifier, bake: Bake, frames: list[int]
         begin = re.split(r"[\\/]", str(modifier_input(modifier, sockets[name])))[-1]
         is_spray = begin == f"{bake.name}_spray."
         is_coast = begin == f"{bake.name}_coast."
-        if not (is_spray or is_coast or begin.startswith(f"{bake.name}_p")):
+        is_wakes = begin == f"{bake.name}_wakes."
+        if not (is_spray or is_coast or is_wakes or begin.startswith(f"{bake.name}_p")):
             return False
         folder = bake.folder / "spray" if is_spray else bake.folder
         path = folder / f"{begin}{frames[0]:04d}.ply"
         if not path.is_file():
             kind, remedy = ("spray", " with --spray") if is_spray else ("points of patches", "")
-            kind = "points of a coast" if is_coast else kind
+            kind = "points of a coast" if is_coast else "wakes" if is_wakes else kind
             raise RenderError(
                 f"{path} is missing: {modifier.id_data.name} reads {kind}; write the job anew from the "
                 f".blend file{remedy}, so that they are baked"
