@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What `make release` refuses to publish."""
 
+import re
 import tomllib
 import zipfile
 
@@ -133,5 +134,7 @@ def test_notes_are_those_of_the_version(tmp_path):
     assert "| `a.zip` | 1.5 MB |" in notes
     assert "### Added" in notes
     assert "## [" not in notes
+    # beside the zips there are no documents
+    assert re.findall(r"\]\((?!https?:)[^)]*\)", notes) == []
     with pytest.raises(ToolError, match=r"no section \[9\.9\.9\]"):
         release.release_notes([path], "9.9.9")
