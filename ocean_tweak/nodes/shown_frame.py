@@ -105,10 +105,11 @@ def frame_values(
 
 def baked_text(frames: Sequence[int]) -> str:
     """The value of the input Baked Frames for ascending frames."""
-    present, last = set(frames), frames[-1]
-    if len(present) == last - frames[0] + 1:
+    first, last = frames[0], frames[-1]
+    if len(frames) == last - first + 1:
         return ""
-    return "".join("1" if frame in present else "0" for frame in range(last, frames[0] - 1, -1))
+    present = set(frames)
+    return "".join("1" if frame in present else "0" for frame in range(last, first - 1, -1))
 
 
 SHOWN_FRAME = GroupKind("Ocean Tweak Frame", 3, _build)

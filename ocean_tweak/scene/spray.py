@@ -181,7 +181,7 @@ def _tell_nodes(
         # a file a frame of the scene, whatever its stretch of time
         files, seconds = float(time_stretch(scene)), float(1 / frame_rate(scene))
         inputs |= {FILES: "", "Scale": 1.0, "Velocity Scale": 1.0, "Viewport Share": 1.0}
-        inputs |= frame_values((-_MOST, _MOST), files, seconds) | {"Baked Frames": ""}
+        inputs |= frame_values(range(-_MOST, _MOST + 1), files, seconds)
     else:
         inputs |= {
             FILES: baked.start, "Scale": plan.scale, "Velocity Scale": velocity_scale(settings, plan, scene),

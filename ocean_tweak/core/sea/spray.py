@@ -25,7 +25,7 @@ from ..parameters.patch_seas import open_sea
 from ..parameters.spray import Spray
 from ..spray.drops import torn_rate
 from ..spray.gusts import gusts
-from ..spray.particles import Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
+from ..spray.particles import Crests, Particles, expected, in_the_air, joined, mean_life
 from .coast_waves import CoastWaves
 from .foam_levels import FoamLevels
 from .hull_motion import HullMotion
@@ -231,7 +231,7 @@ class _Remembered:
             return joined([])
         wind = tearing_wind(self._parameters)
         now, step = Fraction(time), model.step
-        first = math.floor((now - Fraction(longest_life(spray))) / step - Fraction(1, 2))
+        first = math.floor((now - Fraction(spray.life)) / step - Fraction(1, 2))
         moments = range(first, math.floor(now / step + Fraction(1, 2)) + 1)
         with self._busy:
             crests = self._looked_at(moments, around, look)

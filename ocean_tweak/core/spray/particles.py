@@ -96,11 +96,6 @@ class Particles(NamedTuple):
     kind: NDArray[np.int8]
 
 
-def longest_life(spray: Spray) -> float:
-    """Longest life of a particle in s."""
-    return max(spray.life, _DROPS_FLY)
-
-
 def mean_life(spray: Spray) -> float:
     """Mean time of a particle in the air in s, over all kinds."""
     mist = drops.SHARE[drops.MIST]

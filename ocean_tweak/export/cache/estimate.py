@@ -31,7 +31,6 @@ from ...core.sea.over_bed import mesh_over_bed, over_bed
 from ...core.sea.placed_waves import without_placed
 from ...core.sea.shot_spray import ShotSpray
 from ...core.spray.columns import BYTES_IN_FILE
-from ...core.spray.particles import longest_life
 from ...core.synthesis.channels import OF_MEMORY, SurfaceFields, is_put_together
 from ...core.waves.coast.ground import LEAST_RIM
 from ..shelf import nothing_kept
@@ -120,7 +119,7 @@ def with_spray(needed: Estimate, files: SpraySequence, frames: Sequence[Frame]) 
     spread = [frames[round(share * (len(frames) - 1))] for share in _OUTLOOKS]
     count = sum(map(maker.outlook, spread)) / len(spread)
     moment = cpu_seconds(partial(maker.outlook, spread[-1]))
-    most = longest_life(files.spray) * LATTICE_RATE
+    most = files.spray.life * LATTICE_RATE
     gaps = (float(later - earlier) for earlier, later in pairwise(frames))
     a_frame = LATTICE_RATE / float(shot.parameters.timing.fps)
     looks = most + sum(most if changes else min(most, gap * a_frame) for gap in gaps)
