@@ -26,7 +26,7 @@ test-core:  ## the tests of the core alone
 
 test-long:  ## the tests of bakes, ten times as many kills, shared folders, 500 random seas, 300 keyed shots, 1,000 random edits, a session of 2,000 frames, 20,000 damaged files of each kind, and a storm in both engines
 	@$(PYTHON) -m tools.setup python-5.2
-	@OCEAN_TWEAK_LONG_TESTS=1 $(VENV) -m pytest -q tests/batch tests/blender/test_keyed_shots.py tests/blender/test_random_edits.py tests/blender/test_scene_operators.py tests/blender/test_kept_memory.py
+	@OCEAN_TWEAK_LONG_TESTS=1 $(VENV) -m pytest -q tests/batch tests/blender/test_keyed_shots.py tests/blender/test_random_edits.py tests/blender/test_scene_operators.py tests/blender/test_kept_memory.py tests/core/test_properties.py tests/core/test_cascade_plan.py
 
 test-window: ## the tests in a real Blender's window, by mouse and keyboard; wants a machine that is quiet
 	@$(PYTHON) -m tools.setup

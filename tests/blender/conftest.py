@@ -34,6 +34,12 @@ def nothing_fails_unseen(monkeypatch):
         raise errors[0]
 
 
+@pytest.fixture(autouse=True)
+def seas_outlive_files(extension, monkeypatch):
+    """Every test opens a file, and many have the same sea: what was computed of it is kept all the while."""
+    monkeypatch.setattr(extension("scene.file_handlers"), "MEMO", SimpleNamespace(drop=lambda: None))
+
+
 SAMPLES = 32
 DOMAIN = 150.0  # m
 
@@ -188,7 +194,7 @@ def quick(extension, monkeypatch):
     original = moods.Mood.sea
 
     def small(self, timing):
-        foam = extension("core").Foam(resolution=32)
+        foam = extension("core").Foam(resolution=32, half_life=0.3)
         return original(self, timing).replace(resolution=64, foam=foam, spray=None)
 
     monkeypatch.setattr(moods.Mood, "sea", small)

@@ -11,6 +11,7 @@ import pytest
 
 from ocean_tweak.core import (
     Current,
+    Foam,
     Mask,
     Ocean,
     OceanParameters,
@@ -185,9 +186,10 @@ def at_bow(particles: Particles) -> int:
     return int(np.count_nonzero((x > 0.0) & (x < 25.0) & (np.abs(y) < 12.0)))
 
 
+@pytest.mark.usefixtures("only_near")
 def test_bows_are_part_of_the_sea_s_spray() -> None:
     """Around a camera there is much more at the bow than without a hull, and any frame is made alone."""
-    with_ship, spray = CameraSpray(FoamLevels(around())), Spray(life=1.0)
+    with_ship, spray = CameraSpray(FoamLevels(around())), Spray(life=0.6)
     before, found = (with_ship.at(time, spray, (10.0, 0.0)) for time in (TIME - 1.0 / 24.0, TIME))
     without = CameraSpray(FoamLevels(around(SHIP.changed(muted=True)))).at(TIME, spray, (10.0, 0.0))
     assert at_bow(found) > 300 + 3 * at_bow(without)
@@ -202,6 +204,7 @@ def test_bows_are_part_of_the_sea_s_spray() -> None:
     assert math.isfinite(float(found.velocity.sum()))
 
 
+@pytest.mark.usefixtures("only_near")
 def test_in_calm_water_a_fast_ship_throws_what_its_speed_says() -> None:
     """No wind tears anything off: 183 particles a second and m², as of crests at 17 m/s, times the strength.
 
@@ -239,6 +242,7 @@ def test_foam_of_hulls_is_seen_as_far_off_whatever_the_waves() -> None:
     """Without a ship, rings end where the waves are shorter than their cells."""
     short = OceanParameters(resolution=64, domain_size=20.0, layers=(WaveLayer(wind_speed=4.0, fetch=500.0),))
     assert len(FoamLevels(short).seas) < 4
+    short = short.replace(foam=Foam(half_life=0.3))
     for levels in (FoamLevels(short, far=True), FoamLevels(short.replace(layers=(*short.layers, SHIP)))):
         assert len(levels.seas) == 6
         rings = FoamRings(levels, 32).at(TIME, Place(0.0, 0.0))

@@ -41,7 +41,7 @@ def sea(wind: bool = False, **of_coast: object) -> OceanParameters:
 
 
 def test_breakers_throw_up_water_without_wind() -> None:
-    made = CameraSpray.of(sea()).at(TIME, Spray(life=1.0), BEFORE_THE_SHORE)
+    made = CameraSpray.of(sea()).at(TIME, Spray(life=0.6), BEFORE_THE_SHORE)
     assert why_none(sea()) is None
     assert len(made.age) > 300
     x = made.position[:, 0]
@@ -55,11 +55,13 @@ def test_breakers_throw_up_water_without_wind() -> None:
     assert 1.0 < high.max() < 8.0
 
 
+@pytest.mark.usefixtures("only_near")
 def test_without_breaking_there_is_none() -> None:
     assert why_none(sea(breaking=False)) is not None
     assert not len(CameraSpray.of(sea(breaking=False)).at(TIME, Spray(), BEFORE_THE_SHORE).age)
 
 
+@pytest.mark.usefixtures("only_near")
 def test_any_time_alone_is_as_in_a_sequence() -> None:
     spray, going = Spray(life=0.5), CameraSpray.of(sea())
     for step in range(3):
@@ -69,15 +71,17 @@ def test_any_time_alone_is_as_in_a_sequence() -> None:
         np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.usefixtures("only_near")
 def test_spray_of_a_shot_ends_beside_the_bed_as_the_mesh_does() -> None:
-    spray, parameters = Spray(life=0.5), sea()
-    baked = ShotSpray(Shot(parameters), spray, BEFORE_THE_SHORE).at(1 + 24 * int(TIME))
-    whole = CameraSpray.of(parameters).at(TIME, spray, BEFORE_THE_SHORE)
+    spray, parameters, place = Spray(life=0.5), sea(), (150.0, 20.0)
+    baked = ShotSpray(Shot(parameters), spray, place).at(1 + 24 * int(TIME))
+    whole = CameraSpray.of(parameters).at(TIME, spray, place)
     there = (whole.position[:, 1] >= 0.0) & (whole.position[:, 1] <= SIDE)
     assert 50 < there.sum() < len(there)
     np.testing.assert_array_equal(baked.position, whole.position[there])
 
 
+@pytest.mark.usefixtures("only_near")
 def test_a_gale_tears_crests_offshore_as_on_the_open_sea_and_none_over_land() -> None:
     spray, place = Spray(life=0.5), (-150.0, 100.0)
     found = CameraSpray.of(sea(wind=True)).at(TIME, spray, place)

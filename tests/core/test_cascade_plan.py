@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import os
 import re
 
 import numpy as np
@@ -16,8 +17,12 @@ from ocean_tweak.core import Area, Ocean, OceanParameters, ParameterError, Patch
 from ocean_tweak.core.sea.memory import memory_need
 from ocean_tweak.core.sea.patch_plan import SPARE, Wish, odd_side, planned
 
+#: many more with `make test-long`
 QUICK = settings(
-    max_examples=120, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+    max_examples=500 if "OCEAN_TWEAK_LONG_TESTS" in os.environ else 40,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow],
 )
 
 

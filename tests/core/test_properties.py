@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import os
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,13 @@ from ocean_tweak.core.synthesis.channels import OF_WAVES
 from ocean_tweak.core.synthesis.coefficients import propagate
 from tests.core.random_seas import SEAS, patched_seas
 
+#: many more of both with `make test-long`
+LONG = "OCEAN_TWEAK_LONG_TESTS" in os.environ
 QUICK = settings(
-    max_examples=60, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+    max_examples=300 if LONG else 30,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow],
 )
 
 
@@ -87,7 +93,7 @@ REFUSED = [
 
 @pytest.mark.parametrize(("cls", "field"), REFUSED, ids=[f"{c.__name__}.{f.name}" for c, f in REFUSED])
 def test_any_invalid_value_is_refused_by_name(cls: type, field: dataclasses.Field[Any]) -> None:
-    @settings(max_examples=15, deadline=None, derandomize=True)
+    @settings(max_examples=100 if LONG else 10, deadline=None, derandomize=True)
     @given(value=outside(field))
     def refuses(value: object) -> None:
         with pytest.raises(ParameterError, match=f"^{field.name} = "):

@@ -282,8 +282,9 @@ def _patched() -> OceanParameters:
     return planned(OceanParameters(seed=2, layers=(layer,)), Wish(finest=4.0, area=200.0))
 
 
+@pytest.mark.usefixtures("only_near")
 def test_around_a_camera_it_is_the_same_from_anywhere_near() -> None:
-    levels, spray = FoamLevels(_patched()), Spray(life=1.0)
+    levels, spray = FoamLevels(_patched()), Spray(life=0.5)
     maker = CameraSpray(levels)
     found = maker.at(_TIME - 1 / 24.0, spray, (0.0, 0.0))
     x, y = found.position[found.age < 0.1][0, :2].tolist()  # where a crest breaks
@@ -330,7 +331,7 @@ def test_a_step_of_the_finest_square_looks_at_no_coarser_one_again(monkeypatch: 
         return original(sea, square, *others)
 
     monkeypatch.setattr(sea_spray, "_broken", counted)
-    levels, spray = FoamLevels(_patched()), Spray(life=0.5)
+    levels, spray = FoamLevels(_patched()), Spray(life=0.1)
     maker = CameraSpray(levels)
     maker.at(_TIME, spray, (0.0, 0.0))
     assert set(looked) == {0, 1, 2, 3, 4, 5, 6}
