@@ -148,7 +148,7 @@ def test_neighbours_in_windrows_come_from_neighbours() -> None:
     assert rows is not None
     x, y = np.random.default_rng(4).uniform(0.0, 1000.0, (2, 4000))
     here, there = rows.sources(x, y)[0], rows.sources(x, y + 0.1)[0]
-    assert np.mean(np.abs(there - here) > 2.0) < 0.03
+    assert np.mean(np.abs(there - here) > 2.0) < 0.05
 
 
 def test_lines_end_in_points_and_are_not_cut_off_straight() -> None:
@@ -163,7 +163,7 @@ def test_lines_end_in_points_and_are_not_cut_off_straight() -> None:
         ends = [x[0, 1:][np.abs(np.diff(each)) > 10.0] for each in (first, second)]
         apart += [float(np.min(np.abs(ends[1] - end))) for end in ends[0]]
     assert len(apart) > 150
-    assert 1.0 < np.median(apart) < 3.0
+    assert 2.0 < np.median(apart) < 5.0
 
 
 def test_windrows_rise_from_7_to_9_bft() -> None:

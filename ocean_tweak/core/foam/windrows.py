@@ -44,9 +44,9 @@ _CELL, _STRETCH = 50.0, 4.0
 #: lanes per standard deviation of the waves that define them; offset between neighbouring lanes in cells (by
 # the golden section lanes never line up again); offset within a lane, in cells per standard deviation
 _LANES, _SHIFT, _UNLIKE = 1.0, 0.618, 0.12
-#: offset of the ends of cells, in cells per standard deviation of the lines, which end in points and are not
-# cut off straight
-_RAGGED = 0.1
+#: offset of the ends of cells, in cells per standard deviation of the lines and of narrow waves: lines end in
+# points and tongues, and are not cut off straight
+_RAGGED, _TONGUES = 0.1, 0.05
 #: fraction of the variance of g that thins out foam towards the ends of cells, instead of cutting it off
 _THINNING = 0.08
 #: fraction of the variance of foam that fully resolved lines account for; and σ² over the ratio of that
@@ -90,6 +90,8 @@ class _Kind(NamedTuple):
 
 #: waves that define the lanes of cells
 _IN_LANES = _Kind((14.0, 90.0), 20.0, 12, 1.0, False)
+#: waves that define the tongues in which cells end
+_IN_TONGUES = _Kind((0.8, 5.0), 12.0, 6, 1.0, False)
 #: wide lines, narrow lines in between, streaks, and large areas with more or fewer lines
 _LINES = (
     _Kind((60.0, 300.0), 14.0, 12, 0.34, True),
@@ -145,7 +147,7 @@ class Windrows:
         lanes = pattern.lanes.at(x, y)
         off += np.float32(_SHIFT) * np.rint(np.float32(_LANES) * lanes) + np.float32(_UNLIKE) * lanes
         lines = pattern.lines_at(x, y)
-        ragged = np.float32(_RAGGED) * lines
+        ragged = np.float32(_RAGGED) * lines + np.float32(_TONGUES) * pattern.tongues.at(x, y)
         off -= np.rint(off + ragged)
         ends = np.take(_ends(), (np.abs(off + ragged) * np.float32(2 * _AWAY)).astype(np.int32), mode="clip")
         off *= np.float32((1.0 - 1.0 / _STRETCH) * 2.0 * math.pi / (along_x**2 + along_y**2))
@@ -241,11 +243,13 @@ class _Pattern:
 
     cell : wave vector of the cells, rad/m
     lanes : waves whose rounded height numbers the lanes of cells
+    tongues : waves by which the ends of cells are offset
     lines : waves of each kind of lines
     """
 
     cell: tuple[float, float]
     lanes: _Waves
+    tongues: _Waves
     lines: tuple[_Waves, ...]
 
     @property
@@ -301,7 +305,8 @@ def _pattern(direction: float, side: float, seed: int, spacing: float) -> _Patte
 
     (cell_x,), (cell_y,) = fitting(np.array([2.0 * math.pi / _CELL]), np.zeros(1))
     lines = tuple(waves(stream, kind) for stream, kind in enumerate(_LINES, 2))
-    return _Pattern((float(cell_x), float(cell_y)), waves(1, _IN_LANES), lines)
+    tongues = waves(2 + len(_LINES), _IN_TONGUES)
+    return _Pattern((float(cell_x), float(cell_y)), waves(1, _IN_LANES), tongues, lines)
 
 
 @lru_cache(maxsize=1)
