@@ -37,6 +37,7 @@ class Force(NamedTuple):
     visibility : in the air, m, which spray takes from a storm
     spray : its amount; beyond 25 m/s the haze of visibility stands for most of it, which is millions of drops
     seed : of the waves: where a crest breaks before the camera as often as it does in that wind
+    overcast : how much of the sky is closed cloud
     """
 
     wind_speed: float
@@ -49,6 +50,7 @@ class Force(NamedTuple):
     visibility: float = 40e3
     spray: float = 0.0
     seed: int = 3
+    overcast: float = 0.45
 
 
 FORCES = (
@@ -64,7 +66,7 @@ FORCES = (
     Force(22.6, 230e3, 0.5, 2000.0, 1.25, 1.2, 4.5, 9e3, 1.0, seed=1),
     Force(26.5, 280e3, 0.5, 2000.0, 1.25, 2.5, 6.0, 4e3, 0.3),
     Force(30.6, 345e3, 0.5, 2400.0, 1.25, 3.2, 7.0, 1.5e3, 0.15),
-    Force(36.0, 420e3, 0.5, 2800.0, 1.25, 4.5, 8.0, 400.0, 0.12),
+    Force(36.0, 420e3, 0.5, 2800.0, 1.25, 4.5, 8.0, 450.0, 0.05, overcast=0.9),
 )
 
 #: waves of the first force that has any stand this far away, m, higher ones in proportion
@@ -109,8 +111,9 @@ def build(extension: Extension, force: Force) -> None:
     nearest, farthest = BOAT
     afloat["SCALE"] = dataclasses.replace(afloat["BOAT"], nearest=nearest, farthest=farthest, hidden=None)
     light = extension.module("scene.skies").seen(
-        27.0, 62.0, clouds=0.6, overcast=0.45, sunlight=0.75, visibility=force.visibility, exposure=-0.15
-    )
+        27.0, 62.0, clouds=0.6, overcast=force.overcast, sunlight=0.75,
+        visibility=force.visibility, exposure=-0.15,
+    )  # fmt: skip
     moods.MOODS["FORCE"] = dataclasses.replace(
         moods.MOODS["STORM"], waves=partial(sea, extension, force), sky=light,
         water="STORM" if force.wind_speed > 17.0 else "OCEANIC",
