@@ -169,7 +169,9 @@ class Hand:
 
     def _is_at(self, x, y, target, seen):
         self.move(x, y)
-        # where the view behind it is slow to draw, a button may know of the mouse a round later
+        # a round later the button that the mouse has left tells of itself no more; where the view behind is
+        # slow to draw, the one under the mouse may take another
+        self.settle(1)
         name = self.ask("under_mouse()") or self.ask("under_mouse()")
         seen[name] = (x, y)
         return target in name
