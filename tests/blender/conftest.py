@@ -40,6 +40,38 @@ def seas_outlive_files(extension, monkeypatch):
     monkeypatch.setattr(extension("scene.file_handlers"), "MEMO", SimpleNamespace(drop=lambda: None))
 
 
+@pytest.fixture(scope="session")
+def water_file(tmp_path_factory):
+    """Where the first test that builds the water's node group keeps it for those after it."""
+    return tmp_path_factory.mktemp("water") / "water.blend"
+
+
+@pytest.fixture
+def water_is_built_once(extension, water_file, monkeypatch):
+    """To add the water's 500 nodes takes seconds: a file without shader groups gets the one that is kept.
+
+    For tests of how water looks, not of how its nodes come into a file.
+    """
+    material, original = extension("scene.water_material"), extension("nodes.versioned").node_group
+    water = extension("nodes.water").WATER
+
+    def kept(kind):
+        is_new = not any(group.bl_idname == "ShaderNodeTree" for group in bpy.data.node_groups)
+        if kind != water or not is_new:
+            return original(kind)
+        if not water_file.exists():
+            group = original(kind)
+            bpy.data.libraries.write(str(water_file), {group})
+            return group
+        with bpy.data.libraries.load(str(water_file)) as (_, wanted):
+            wanted.node_groups = [water.name]
+        for library in [each for each in bpy.data.libraries if each.filepath == str(water_file)]:
+            bpy.data.libraries.remove(library)
+        return original(kind)
+
+    monkeypatch.setattr(material, "node_group", kept)
+
+
 SAMPLES = 32
 DOMAIN = 150.0  # m
 
