@@ -64,6 +64,20 @@ def test_the_flow_of_a_wave_is_half_its_square_along_its_direction() -> None:
     assert not flow[~wet].any()
 
 
+def test_over_a_film_of_water_a_wave_is_as_long_as_over_five_centimetres() -> None:
+    """Of 64 s, so long that 0.05 m has it turn by less than is allowed from sample to sample."""
+    coast = Coast(depth=Raster(np.full((41, 41), 0.01)), spacing=5.0, rim=60.0, step=5.0)
+    ground = Ground.of(coast, 200.0, 64, 0.0, DEEP)
+    film = ground.depth == ground.depth.min()
+    assert 0.0 < ground.depth.min() < 0.05
+    k = 2.0 * np.pi / 64.0 / np.sqrt(G * 0.05)
+    wave = 0.3 * np.exp(1j * k * ground.step * np.arange(ground.rows)[:, np.newaxis])
+    elevation = np.broadcast_to(wave, ground.depth.shape)[ground.depth > 0.0][np.newaxis]
+    pictures = Pictures(np.array([8]), elevation.astype(np.complex64), np.zeros((2, 0), np.complex64))
+    flow = flow_over_bed(pictures, ground, 512.0, G)
+    assert_allclose(np.median(flow[film], axis=0), (0.5 * 0.3**2, 0.0), rtol=1e-3, atol=1e-6)
+
+
 @pytest.mark.parametrize("rotation", [0.0, 0.4])
 def test_waves_turn_towards_the_shore_as_snell_has_it(rotation: float) -> None:
     """sin θ over the phase speed stays: of a swell of 8 s at the peak."""
