@@ -220,8 +220,6 @@ def _before(surface: bpy.types.NodeSocket) -> bpy.types.NodeSocket | None:
 
 def _clear(tree: bpy.types.NodeTree, cut: bpy.types.Node) -> None:
     """Remove a cut and what it alone reads, whatever is left of that."""
-    if HIDDEN in cut.inputs:
-        cut.inputs[HIDDEN].driver_remove("default_value")
     place = _source(cut, "Share")
     nodes = [cut, place, _source(place, "Vector"), *(_source(cut, name) for name in _LOOK_UPS)]
     for each in nodes:
