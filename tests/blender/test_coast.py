@@ -52,6 +52,16 @@ def test_the_mesh_over_the_bed_is_the_sea_there(ocean, core, coast_of):
     assert np.diff(x)[-1] < 0.5 * np.diff(x)[0]
 
 
+def test_points_over_land_have_a_film_of_water_and_others_the_depth(ocean, extension):
+    ocean.ocean_tweak.coast.bed = slope()
+    bpy.ops.ocean.make_coast()
+    points = extension("scene.bed_points").points_of(ocean)
+    depth = values(points.data, extension("nodes.names").COAST_DEPTH)
+    depth = depth[depth != 0.0]  # points behind the samples, which hold averages, have none
+    assert depth.max() > 11.9
+    assert depth.min() == pytest.approx(0.02)  # m, where the ground is up to 1 m above the water
+
+
 def test_patterns_of_the_material_lie_on_the_water_at_rest(ocean, coast_of):
     ocean.ocean_tweak.coast.bed = slope()
     bpy.ops.ocean.make_coast()
