@@ -90,6 +90,24 @@ def test_the_whole_picture_lies_on_it(fan):
     np.testing.assert_array_equal(fan.x[:, 0], fan.x[:, -1])
 
 
+def test_water_that_a_storm_carries_into_the_picture_has_its_own_foam():
+    """Beside the picture there is the mean, and where that came into it there was a straight edge."""
+    layer = WaveLayer(wind_speed=25.0, fetch=300e3, wind_direction=0.4)
+    patches = (Patch(900.0, 0.3, 20.0, 1e6, 128), Patch(130.0, -0.9, 3.0, 20.0, 128))
+    storm = OceanParameters(layers=(layer,), patches=patches, foam=Foam(half_life=0.3), choppiness=1.25)
+    levels = FoamLevels(storm)
+    made = FoamFan(levels, PLACES).at(TIME, AMONG)
+    displacement = Ocean(storm).surface(TIME, {"displacement"}, on=Places(made.x, made.y)).displacement
+    is_mean = made.foam.foam == np.float32(levels.beyond.foam)
+    away = np.hypot(displacement[..., 0], displacement[..., 1])
+    assert away.max() > 4.0
+    shown = dataclasses.replace(made, x=made.x + displacement[..., 0], y=made.y + displacement[..., 1])
+    distance, angle = seen_from(shown, AMONG)
+    inside = (np.abs(angle) < AMONG.half_angle) & (distance > 3.0 * AMONG.near) & (distance < 100.0)
+    assert np.count_nonzero(inside) > 500
+    assert np.mean(is_mean[inside]) < 0.003
+
+
 def test_foam_is_that_of_the_sea_with_the_waves_that_are_seen(fan, levels):
     level = 2
     whole = (fan.size > 1.05 * FINEST * 2.0**level) & (fan.size < 1.7 * FINEST * 2.0**level)

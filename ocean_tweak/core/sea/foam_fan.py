@@ -7,6 +7,8 @@ sparse beside it; its rows are r ∝ 1/u² for even steps of u, so cells are ∝
 the geometric mean of both. A camera among the waves sees their faces, on which a pixel is a few times longer
 than wide, and so are the cells.
 
+Waves carry water sideways, into the picture too: the closer a row, the wider are its directions.
+
 Each row has the foam of the level (`foam_levels`) with the next smaller cells, and blends into the next level
 close to it. Foam is computed within the picture, and has its mean elsewhere. Only breaking waves that the
 nearest row can show count as resolved.
@@ -20,6 +22,7 @@ import math
 import threading
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -152,7 +155,7 @@ class FoamFan:
         now = model.reduced(time)
         stepped = view.stepped(model.drift, float(now))
         with self._busy:
-            places = _places(stepped, self.places)
+            places = _places(stepped, self.places, self._aside)
             if self._view != stepped:
                 self._view, self._rows = stepped, tuple(self._new_rows(places))
             missing = [rows.foam.missing(now) for rows in self._rows]
@@ -164,6 +167,12 @@ class FoamFan:
             foam = self._shown(places, now)
         drift_x, drift_y = (float(now) * speed for speed in model.drift)
         return Fan(places.x + drift_x, places.y + drift_y, places.size, foam)
+
+    @cached_property
+    def _aside(self) -> float:
+        """How far waves carry water sideways, m: as far as the significant ones do."""
+        height = self._levels.seas[0].statistics().significant_wave_height
+        return 0.5 * self._levels.parameters.choppiness * height
 
     def _new_rows(self, places: _Places) -> list[_Rows]:
         """Rows for each level that the picture shows."""
@@ -208,8 +217,11 @@ class FoamFan:
         return Whitecaps(*total)
 
 
-def _places(view: View, count: int) -> _Places:
-    """The places of a fan with at most this many."""
+def _places(view: View, count: int, aside: float) -> _Places:
+    """The places of a fan with at most this many.
+
+    aside : distance from which water may have come into the picture, m
+    """
     near = _NEARER * view.near
     farthest = max(view.reach, 2.0 * near)
     octaves = math.log(farthest / near)
@@ -223,14 +235,16 @@ def _places(view: View, count: int) -> _Places:
         dense = near / np.linspace(1.0, math.sqrt(near / farthest), rows) ** 2
     before = near * np.linspace(_FOOT, 1.0, _ROWS_BEFORE + 1)[:-1]
     distance = np.concatenate((before, dense))
-    in_picture = np.linspace(-view.half_angle, view.half_angle, columns)
-    beside = np.linspace(view.half_angle, 2.0 * math.pi - view.half_angle, _COLUMNS_BESIDE + 1)[1:]
-    angle = view.azimuth + np.concatenate((in_picture, beside))
+    half = np.minimum(view.half_angle + np.arctan(aside / distance), math.pi - _TURN)[:, np.newaxis]
+    in_picture = half * np.linspace(-1.0, 1.0, columns)
+    beside = half + 2.0 * (math.pi - half) * np.linspace(0.0, 1.0, _COLUMNS_BESIDE + 1)[1:]
+    angle = view.azimuth + np.concatenate((in_picture, beside), axis=1)
     x = view.x + distance[:, np.newaxis] * np.cos(angle)
     y = view.y + distance[:, np.newaxis] * np.sin(angle)
     x[:, -1], y[:, -1] = x[:, 0], y[:, 0]
     along = np.concatenate((np.full(_ROWS_BEFORE, before[1] - before[0]), np.gradient(dense)))
-    across = np.full(len(angle), beside[1] - beside[0])
-    across[:columns] = across[-1] = in_picture[1] - in_picture[0]
+    across = np.repeat(np.diff(beside[:, :2]), angle.shape[1], axis=1)
+    across[:, :columns] = np.diff(in_picture[:, :2])
+    across[:, -1] = across[:, 0]
     size = np.sqrt((along * distance)[:, np.newaxis] * across)
     return _Places(x, y, size, columns)
