@@ -155,7 +155,7 @@ COASTS = {
     "HARBOUR": Mood(
         "Harbour", "Waves that pass the gap between two moles and spread in a fan behind it",
         waves=partial(_coast, 12.0, 120e3, 0.0, 14.0, Foam()), water="COASTAL",
-        sky=seen(13.0, -22.0, clouds=0.5),
+        sky=seen(14.0, -35.0, clouds=0.5, exposure=-0.25),
         eye=0.0, crest_distance=0.0, lens=50.0, tilt=0.0, rings=0, floats="",
         shore=Shore(
             "HARBOUR", (10.0, 190.0, 60.0), (262.0, 262.0, 4.0),
