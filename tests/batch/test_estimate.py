@@ -37,7 +37,8 @@ def measured(*arguments: object) -> tuple[int, float]:
     program = [sys.executable, "-c", MEASURE, *command(*arguments)]
     # glibc keeps what was freed for each thread: from machine to machine an eighth more or less
     env = {**os.environ, "MALLOC_ARENA_MAX": "1"}
-    memory, seconds = subprocess.run(program, cwd=ROOT, env=env, capture_output=True, check=True).stdout.split()
+    told = subprocess.run(program, cwd=ROOT, env=env, capture_output=True, check=True).stdout
+    memory, seconds = told.split()
     return int(memory), float(seconds)
 
 
