@@ -34,12 +34,6 @@ def nothing_fails_unseen(monkeypatch):
         raise errors[0]
 
 
-@pytest.fixture(autouse=True)
-def seas_outlive_files(extension, monkeypatch):
-    """Every test opens a file, and many have the same sea: what was computed of it is kept all the while."""
-    monkeypatch.setattr(extension("scene.file_handlers"), "MEMO", SimpleNamespace(drop=lambda: None))
-
-
 @pytest.fixture(scope="session")
 def water_file(tmp_path_factory):
     """Where the first test that builds the water's node group keeps it for those after it."""

@@ -16,11 +16,6 @@ MB = 10**6
 
 
 @pytest.fixture
-def seas_outlive_files():
-    """Not here: what goes with a file is tested."""
-
-
-@pytest.fixture
 def memo(extension):
     module = extension("core.numerics.memo")
     module.MEMO.drop()

@@ -147,7 +147,7 @@ def test_it_stands_behind_the_others_by_whose_order_files_know_them(found):
     others = ["breaking", "foam_age", "speed"]
     assert attributes == ["velocities", "normals", "foam", "cusp", "displayColor", *others]
     images = ["disp", "foam", "normal", "vel", "slope", "strain", "foam_age", "hs", "qb", "direction"]
-    assert baked == [*images, "speed", "points", "coast"]
+    assert baked == [*images, "speed", "points", "coast", "wakes"]
 
 
 def test_it_is_documented(found):
