@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from statistics import median
 
 import pytest
 
@@ -50,7 +51,8 @@ def test_memory_and_time_are_near(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     shot = Shot.from_dict(json.loads(sea.read_text()))
     job = Job("sea", "1", shot, frames=(1, 2))
     monkeypatch.setattr(cache_estimate, "usable_cores", lambda: 1)
-    told = estimate(tmp_path, job, job.frames).seconds
+    # what other programs do meanwhile makes a trial slower, and what is told from it 16 times as much
+    told = median(estimate(tmp_path, job, job.frames).seconds for _ in range(5))
     _, start = measured(*arguments, "--estimate")
     memory, seconds = measured(*arguments)
     assert process_memory(job) == pytest.approx(memory, rel=0.1)
