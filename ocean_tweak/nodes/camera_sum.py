@@ -17,7 +17,7 @@ from .building import Builder, Plug, Socket, output
 from .camera_patch import CAMERA_PATCH, Values, is_over, weighted_by
 from .fields import alone, combined, coordinates, named_attribute
 from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, FOAM_AGE, OTHERS, SLOPES, VELOCITY, WEIGHT
-from .over_bed import DEPTH, FOAM_OVER_BED, IS_THERE, OVER_BED, SHARE
+from .over_bed import DEPTH, FOAM_OVER_BED, IS_THERE, OVER_BED, SHARE, whitecaps_left
 from .rest_grid import CELL, GRID_FACTS
 from .sample import OCEAN_INPUT
 from .versioned import GroupKind, node_group
@@ -131,7 +131,7 @@ def _over_bed(build: Builder, bed: bpy.types.Node, open_sea: Values) -> Values:
 
 def _foam_over_bed(build: Builder, bed: bpy.types.Node, foam: dict[str, Socket]) -> dict[str, Socket]:
     """Foam, breaking and age with those over a bed: the age of that of which there is more."""
-    share, _, _ = coordinates(build, output(bed, SHARE))
+    share = whitecaps_left(build, bed)
     of_bed = dict(
         zip((FOAM, BREAKING, FOAM_AGE), coordinates(build, output(bed, FOAM_OVER_BED)), strict=True)
     )
@@ -228,4 +228,4 @@ def _weights(build: Builder, own: bpy.types.Node) -> dict[str, Socket]:
     return {"Weights": output(facts, "Geometry"), **lie}
 
 
-CAMERA_SUM = GroupKind("Ocean Tweak Camera Sum", 3, _build)
+CAMERA_SUM = GroupKind("Ocean Tweak Camera Sum", 4, _build)

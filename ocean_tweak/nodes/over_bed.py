@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..core.waves.coast.breakers import WHITECAPS_BY_HEIGHT
 from .averaged import AVERAGED, READ, SOCKETS
 from .averages import own_averages
 from .building import Builder, Plug, Socket, output
@@ -117,11 +118,17 @@ def with_bed(
     return value, along_x, along_y
 
 
+def whitecaps_left(build: Builder, bed: bpy.types.Node) -> Socket:
+    """`core.waves.coast.breakers.whitecaps_left` of the open sea's share."""
+    share, _, _ = coordinates(build, output(bed, SHARE))
+    return build.math("POWER", share, WHITECAPS_BY_HEIGHT)
+
+
 def foam_with_bed(build: Builder, bed: bpy.types.Node, foam: Socket) -> Socket:
     """Foam of the open sea, over a bed."""
-    share, _, _ = coordinates(build, output(bed, SHARE))
+    left = whitecaps_left(build, bed)
     of_bed, _, _ = coordinates(build, output(bed, FOAM_OVER_BED))
-    most = build.math("MAXIMUM", build.math("MULTIPLY", foam, share), of_bed)
+    most = build.math("MAXIMUM", build.math("MULTIPLY", foam, left), of_bed)
     return build.switch("FLOAT", output(bed, IS_THERE), foam, most)
 
 

@@ -154,4 +154,4 @@ def _bounded(build: Builder, step: Socket, off: Socket) -> Socket:
     return build.scaled(step, build.math("MINIMUM", share, 1.0))
 
 
-SURFACE = GroupKind("Ocean Tweak Surface", 2, _build_surface)
+SURFACE = GroupKind("Ocean Tweak Surface", 3, _build_surface)

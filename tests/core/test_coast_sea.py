@@ -362,13 +362,14 @@ def waves_k(omega: float, depth: float) -> float:
     return low
 
 
-def test_whitecaps_are_left_in_proportion_to_the_open_sea_s_share() -> None:
+def test_whitecaps_are_left_in_proportion_to_the_sixth_power_of_the_open_sea_s_share() -> None:
+    """As the cube of the saturation, itself in proportion to the square of the height, Phillips (1985)."""
     ocean, full = Ocean(sea()), np.ones((SAMPLES, SAMPLES), np.float32)
     x, y = np.array([-150.0, 100.0, 150.0, 195.0]), np.full(4, 60.0)
     none = {name: np.zeros(4, np.float32) for name in Whitecaps._fields}
     found = with_whitecaps(ocean, none, x, y, Whitecaps(full, full, 2.0 * full))
     assert ocean.coast is not None
-    assert_allclose(found["foam"], ocean.coast.shares(x, y).value, atol=1e-6)
+    assert_allclose(found["foam"], (ocean.coast.shares(x, y).value ** 2) ** 3, atol=1e-6)
     assert found["foam"][0] == 1.0
     assert found["foam"][3] == 0.0
     assert (np.diff(found["foam"][1:]) < 0.0).all()

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..foam.model import Whitecaps
 from ..synthesis.channels import CHANNELS, OF_MEMORY
+from ..waves.coast.breakers import whitecaps_left
 from ..waves.coast.mesh import CoastMesh, coast_mesh
 from .ocean import Ocean
 from .regions import Places
@@ -59,6 +60,6 @@ def with_whitecaps(
     """
     assert sea.coast is not None
     open_sea = tile.at(x, y, sea.parameters.domain_size)
-    share = sea.coast.shares(x, y).value.astype(np.float32)
+    share = whitecaps_left(sea.coast.shares(x, y).value).astype(np.float32)
     left = Whitecaps(open_sea.foam * share, open_sea.breaking * share, open_sea.foam_age)
     return {**fields, **left.over(*(fields[name] for name in Whitecaps._fields))._asdict()}

@@ -26,6 +26,7 @@ from ..parameters.spray import Spray
 from ..spray.drops import torn_rate
 from ..spray.gusts import gusts
 from ..spray.particles import Crests, Particles, expected, in_the_air, joined, mean_life
+from ..waves.coast.breakers import whitecaps_left
 from .coast_waves import CoastWaves
 from .foam_levels import FoamLevels
 from .hull_motion import HullMotion
@@ -149,7 +150,7 @@ class CameraSpray:
             self._hulls = HullMotion(finest.parameters)
         own = own_spray(finest.parameters, x, y, time, height, velocity, self._hulls.at)
         if coast is not None:
-            births = births * coast.shares(x, y).value
+            births = births * whitecaps_left(coast.shares(x, y).value)
             own = stronger(own, coast.spray(x, y, time, velocity))
         thrown = _OF_A_CREST * own.strength
         more = thrown > births

@@ -31,8 +31,20 @@ _FRONT = (-0.3, 0.05, 0.5, 1.2)
 #: height in m of a breaker that throws up as much as a wind of 17 m/s tears off a crest that breaks, and how
 #: fast it throws it up, over √(gH): from the height of the front to half as high again
 _AS_A_CREST, _UP = 2.0, 0.7
+#: of the height of waves, to which whitecaps are in proportion
+WHITECAPS_BY_HEIGHT = 6.0
 #: envelope over that from which waves are broken: none is white below, all of the front is above
 _SOFT = (0.9, 1.1)
+
+
+def whitecaps_left(share: Array) -> Array:
+    """What is left of the open sea's whitecaps where its waves have this share of their height.
+
+    Waves lose by whitecapping in proportion to B³, B in proportion to the square of their height (Phillips
+    1985, J. Fluid Mech. 156): in the lee of a mole low waves hardly break.
+    """
+    left: Array = share**WHITECAPS_BY_HEIGHT
+    return left
 
 
 def broken_share(rms_height: Array, depth: Array) -> Array:
