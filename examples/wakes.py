@@ -63,7 +63,7 @@ def gale(extension: Extension) -> None:
         Shot(
             "FRESH_BREEZE",
             GALE,
-            {"eye": 30.0, "lens": 33.0, "vertices": 600_000},
+            {"eye": 9.0, "lens": 40.0, "vertices": 600_000},
             is_afloat=False,
             light=light,
         ),
@@ -78,17 +78,17 @@ def gale(extension: Extension) -> None:
     course = look - SHIP_COURSE
     ahead = Vector((math.cos(course), math.sin(course), 0.0))
     middle = (
-        camera.matrix_world.translation + 125.0 * Vector((math.cos(look), math.sin(look), 0.0)) + 22.0 * ahead
+        camera.matrix_world.translation + 150.0 * Vector((math.cos(look), math.sin(look), 0.0)) + 14.0 * ahead
     )
     middle.z = 0.0
-    camera.rotation_euler.x -= math.radians(10.0)
+    camera.rotation_euler.x -= math.radians(1.0)
     new_ship(extension, "Ship", SHIP_SIZE, middle, ahead, SHIP_SPEED)
     press(extension, ["Ship"])
     settings = ocean_of(scene).ocean_tweak
     wake = next(layer.wake for layer in settings.layers if layer.kind == "WAKE")
     wake.amplitude_scale, wake.foam_half_life = 0.7, 10.0
     settings.use_spray = True
-    scene.cycles.transparent_max_bounces = 64
+    scene.cycles.transparent_max_bounces = 256
 
 
 def ocean_of(scene: bpy.types.Scene) -> bpy.types.Object:
