@@ -40,9 +40,9 @@ INPUTS = (
     Plug("Viewport Share", "NodeSocketFloat", 1.0, "Of all particles, those that a window shows, the larger"),
     Plug("Material", "NodeSocketMaterial", None, "Of the points"),
 )
-#: of their distance to the camera, the radii of drops and of puffs of mist at most: a drop at the lens is no
-#: ball that covers the picture, and no camera is inside a puff
-_LARGEST_DROP, _LARGEST_MIST = 0.0006, 0.25
+#: of their distance to the camera, the radii of drops, least and most, and of puffs of mist, at most: a drop
+#: at the lens is no ball that covers the picture, all are not of one size there, and no camera is in a puff
+_LARGEST_DROPS, _LARGEST_MIST = (0.00025, 0.0009), 0.25
 #: puffs behind each other, from which on fewer and denser ones are drawn in their place, up to some density.
 # Cycles ends light in black after as many as its transparent bounces, and those are slow
 _LAYERS, _DENSEST = 8.0, 6.0
@@ -81,7 +81,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
     is_mist = build.compare("GREATER_THAN", column(build, KIND), MIST - 0.5, "FLOAT")
     view = _from_camera(build, moved)
     away = alone(build, "LENGTH", view)
-    largest = build.math("MULTIPLY", away, build.switch("FLOAT", is_mist, _LARGEST_DROP, _LARGEST_MIST))
+    largest = build.switch("FLOAT", is_mist, _largest_drop(build), _LARGEST_MIST)
+    largest = build.math("MULTIPLY", away, largest)
     radius = build.math("MINIMUM", radius, largest)
     left = build.math("SUBTRACT", 1.0, build.math("DIVIDE", column(build, "age"), build.given("Life")))
     shown = build.store(shown, VELOCITY, velocity, "FLOAT_VECTOR")
@@ -95,6 +96,13 @@ def _build(tree: bpy.types.NodeTree) -> None:
     radius = build.switch("FLOAT", is_drawn, 0.0, radius)
     points = build.change("GeometryNodeMeshToPoints", shown, {"Position": moved, "Radius": radius})
     build.finish(build.change("GeometryNodeSetMaterial", points, {"Material": build.given("Material")}))
+
+
+def _largest_drop(build: Builder) -> Socket:
+    """Radius of a drop relative to its distance, at most: few are large, as few drops are."""
+    least, most = _LARGEST_DROPS
+    part = build.math("DIVIDE", column(build, "number"), float(NUMBERS))
+    return build.math("ADD", build.math("MULTIPLY", build.math("POWER", part, 3.0), most - least), least)
 
 
 def _share(build: Builder) -> Socket:
@@ -167,4 +175,4 @@ def _density(build: Builder, layers: Socket, left: Socket, seen: Socket, share: 
     return build.math("MULTIPLY", density, build.math("MULTIPLY", near, near))
 
 
-SPRAY = GroupKind("Ocean Tweak Spray", 6, _build)
+SPRAY = GroupKind("Ocean Tweak Spray", 7, _build)

@@ -63,7 +63,8 @@ def test_what_is_close_to_the_lens_is_no_ball_that_covers_the_picture(ocean, emp
         away = np.linalg.norm(expected.position - nearest - (0.0, 0.0, 0.1), axis=1)
         found = points(spray_of(ocean))
         seen = found["radius"]
-        largest = np.where(is_mist, 0.25, 0.0006) * away
+        part = (expected.id % 2**24) / 2**24
+        largest = np.where(is_mist, 0.25, 0.00025 + 0.00065 * part**3) * away
         is_drawn = ~is_mist | (found["mist_density"] > 0.0)
         assert is_drawn.mean() > 0.99
         drawn = np.where(is_drawn, np.minimum(expected.radius, largest), 0.0)

@@ -62,3 +62,13 @@ def test_puffs_of_mist_spread_by_the_turbulence_of_the_wind() -> None:
         grown = found.radius[mist] - 240.0 * Spray().size
         rates.append(grown / found.age[mist])
     np.testing.assert_allclose(np.concatenate(rates), 0.3 * friction_velocity(25.0), rtol=1e-3)
+
+
+def test_mist_rises_as_a_plume_over_ground_does() -> None:
+    """By 0.4 friction velocities on average (Batchelor 1964), less what its drops fall: 0.17 to 0.7 m/s."""
+    found = thrown(wind=25.0, since=3.0, births=300.0)
+    mist = found.kind == drops.MIST
+    assert mist.sum() > 100
+    rising = float((found.position[mist, 2] / found.age[mist]).mean())
+    rate = 0.4 * friction_velocity(25.0)
+    assert rate - 0.3 < rising < rate + 0.1  # those that have fallen back are not among them

@@ -32,7 +32,7 @@ FOAM_OF_TWO_AGES = 2
 # carry it
 WINDROWS = 3
 #: the spray: raised whenever the same sea and settings give different particles
-SPRAY = 4
+SPRAY = 5
 
 #: the encoding of a bake's maps: raised whenever the same fields give a different file. In 1 all had 32 bits
 ENCODING = 2

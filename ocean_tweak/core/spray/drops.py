@@ -19,10 +19,10 @@ SPUME, DROPLET, MIST = 0, 1, 2
 
 #: fractions of all particles, and ranges of radii in m
 SHARE = {SPUME: 0.794, DROPLET: 0.2, MIST: 0.006}
-_RADII = {SPUME: (0.3e-3, 1.0e-3), DROPLET: (0.6e-3, 2.0e-3), MIST: (0.1e-3, 0.25e-3)}
-#: exponents of the size distributions: r⁻⁸ from 0.1 to 0.25 mm (Andreas 1992), and r⁻⁵ for larger drops,
-# which his function lacks (fitted by Veron and others 2012)
-_POWER = {SPUME: 5.0, DROPLET: 5.0, MIST: 8.0}
+_RADII = {SPUME: (0.3e-3, 1.0e-3), DROPLET: (0.6e-3, 2.0e-3), MIST: (37.5e-6, 0.1e-3)}
+#: exponents of the size distributions: r⁻²·⁸ from 37.5 µm to 0.1 mm (Andreas 1992), drops that fall by less
+# than a metre a second and drift, and r⁻⁵ for those that he lacks (fitted by Veron and others 2012)
+_POWER = {SPUME: 5.0, DROPLET: 5.0, MIST: 2.8}
 
 #: particles per second and m² of breaking crest at 15 m/s, and the exponent of the wind, chosen by eye: 400
 # at 20 m/s and 1,200 at 25 m/s

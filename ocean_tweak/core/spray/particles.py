@@ -28,6 +28,9 @@ _CARRYING = 0.75
 #: velocities of the air's turbulence along the wind, across it and up, in friction velocities (Panofsky &
 #: Dutton 1984); over some seconds they stay (Taylor 1921)
 _TURBULENCE = (2.4, 1.9, 1.25)
+#: that of mist up, which stays in the air for longer than an eddy near the water: what rises does so at the
+# rate of a plume over ground, 0.4 friction velocities on average (Batchelor 1964)
+_RISING = 0.5
 #: initial fraction of the carrying wind by kind of particle, minimum and maximum
 _AT_ONCE = {drops.SPUME: (0.15, 0.5), drops.DROPLET: (0.0, 0.2), drops.MIST: (0.3, 0.8)}
 #: largest upward speed of launched drops in m/s: a constant, and a factor of the wind at 10 m
@@ -182,7 +185,8 @@ def _launched(
     velocity = water.copy()
     velocity[:, :2] += along[:, np.newaxis] * direction
     velocity[:, 2] += up
-    return Flight(start, velocity, _air(key, carrying, direction, spray, wind), drops.response_time(radius))
+    air = _air(key, kind, carrying, direction, spray, wind)
+    return Flight(start, velocity, air, drops.response_time(radius))
 
 
 def _between(
@@ -199,7 +203,12 @@ def _between(
 
 
 def _air(
-    key: NDArray[np.uint64], carrying: float, direction: RealArray, spray: Spray, wind: Wind
+    key: NDArray[np.uint64],
+    kind: NDArray[np.int8],
+    carrying: float,
+    direction: RealArray,
+    spray: Spray,
+    wind: Wind,
 ) -> RealArray:
     """(particles, 3) wind around each, m/s, at most that at 10 m."""
     along, across, up = (
@@ -207,6 +216,7 @@ def _air(
         * _bounded_normal(key, _AIR + 2 * index)
         for index, times in enumerate(_TURBULENCE)
     )
+    up *= np.where(kind == drops.MIST, np.float32(_RISING / _TURBULENCE[2]), np.float32(1.0))
     along += np.float32(carrying)
     x, y = direction
     air = np.stack((x * along - y * across, y * along + x * across, up), axis=-1)
