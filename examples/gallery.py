@@ -47,6 +47,7 @@ class Shot(NamedTuple):
     is_afloat : whether something floats before the camera
     away : how far that is, at least and at most, in m; None for where the mood has it
     shadows : of clouds on the water
+    frame : of the still
     """
 
     mood: str
@@ -58,6 +59,7 @@ class Shot(NamedTuple):
     is_afloat: bool = True
     away: tuple[float, float] | None = None
     shadows: CloudShadows | None = None
+    frame: int = 1
 
 
 SHOTS = {
@@ -70,9 +72,11 @@ SHOTS = {
     "backlit-crest": Shot(
         "FRESH_BREEZE", (14.0, 80e3), is_afloat=False,
         changes={
-            "rings": 0, "eye": 0.9, "crest_distance": 5.0, "lens": 70.0, "tilt": math.radians(-2.0),
+            "rings": 0, "eye": 1.2, "crest_distance": 9.0, "lens": 70.0, "tilt": math.radians(-2.5),
+            "vertices": 600_000,
         },
         light={"sun_azimuth": math.radians(96.0), "sun_elevation": math.radians(13.0), "clouds": 0.35},
+        frame=45,
     ),
     "aerial-60m": Shot(
         "FRESH_BREEZE", (13.0, 200e3), away=(150.0, 210.0), foam=2.5,
@@ -107,9 +111,9 @@ SHOTS = {
         "STORM", sky="STORM_LIGHT", light={"sun_azimuth": math.radians(130.0)},
         changes={"lens": 50.0, "tilt": math.radians(-3.5)},
     ),
-    "beach": Shot("BEACH"),
-    "harbour": Shot("HARBOUR"),
-    "islet": Shot("ISLET"),
+    "beach": Shot("BEACH", frame=40),
+    "harbour": Shot("HARBOUR", frame=40),
+    "islet": Shot("ISLET", frame=40),
 }  # fmt: skip
 
 
@@ -124,7 +128,7 @@ def main() -> None:
             set_quality(bpy.context.scene, arguments.width, arguments.samples)
             bpy.context.scene.render.use_motion_blur = not arguments.still
             picture = arguments.out.resolve() / f"{name}-{engine.lower()}.png"
-            render(bpy.context.scene, arguments.frame, picture)
+            render(bpy.context.scene, arguments.frame or SHOTS[name].frame, picture)
             if arguments.jpeg:
                 save_jpeg(picture, arguments.jpeg.resolve() / f"{picture.stem}.jpg")
 
@@ -134,6 +138,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser = picture_parser("gallery.py")
     parser.add_argument("--shots", nargs="+", default=tuple(SHOTS), choices=SHOTS)
     parser.add_argument("--engines", nargs="+", default=ENGINES, choices=ENGINES)
+    parser.set_defaults(frame=0)
     parser.add_argument("--still", action="store_true", help="without motion blur")
     return parser.parse_args(argv)
 
@@ -145,7 +150,7 @@ def picture_parser(program: str) -> argparse.ArgumentParser:
     parser.add_argument("--jpeg", type=Path, help="folder for small JPEG files of them")
     parser.add_argument("--width", type=int, default=1280, help="pixels; the height is 27/64 of it")
     parser.add_argument("--samples", type=int, default=64)
-    parser.add_argument("--frame", type=int, default=1)
+    parser.add_argument("--frame", type=int, default=1, help="in place of each picture's own")
     return parser
 
 

@@ -29,7 +29,9 @@ SURFACE_FACTOR = 0.33
 _OLD_BUBBLES = 0.55
 #: cusps between which a crest is sharp
 _SHARP = (0.12, 0.42)
-#: longest path of light in m through a round and through a sharp crest
+#: cusps between which the sun shines through a crest: the rest of it is too thick
+_THIN = (0.16, 0.52)
+#: longest path of light in m through a thick and through a thin crest
 _WAYS = (11.0, 2.2)
 #: how much more of the light goes on forward than aside: k of the phase function
 _FORWARD = 0.72
@@ -80,10 +82,10 @@ def light_through_crests(shade: Shading, given: dict[str, Socket], absorption: S
     # cosine of the sun's angle to the back's normal, which is the front's turned about the vertical
     met = shade.math("MULTIPLY_ADD", shade.separate(normal)[2], high, turned_away)
     met = shade.math("MAXIMUM", met, 0.0)
-    sharp = sharpness(shade)
-    share = shade.math("MULTIPLY", shade.math("MULTIPLY", through, met), sharp)
+    thin = shade.smooth(shade.value(CUSP), *_THIN)
+    share = shade.math("MULTIPLY", shade.math("MULTIPLY", through, met), thin)
     share = shade.math("MULTIPLY", share, given["Crest Glow"])
-    left = _left_in_wedge(shade, absorption, shade.mix(sharp, *_WAYS))
+    left = _left_in_wedge(shade, absorption, shade.mix(thin, *_WAYS))
     return shade.scale(shade.vector("MULTIPLY", given["Sun Light"], left), share)
 
 
