@@ -19,7 +19,9 @@ from ..core.numerics.memo import MEMO
 from ..core.numerics.rounding import rounded
 from .surface_detail import foam_lace, gradient, gusts, ripple_slopes, spline_weights
 
-_KEY, _CHANNELS = "ocean_tweak_image", "channels of images"
+_KEY = "ocean_tweak_image"
+#: in the memo; the patterns of every file are the same
+CHANNELS = "channels of images"
 _Maker = Callable[[], Iterable[NDArray[np.float64]]]
 _RESOLUTION = 512
 _GUST_RESOLUTION = 128
@@ -33,7 +35,7 @@ def make_ahead() -> None:
 
     def make() -> None:
         for name, version, channels in lacking:
-            MEMO.get(_CHANNELS, _tag(name, version), partial(_channels, channels))
+            MEMO.get(CHANNELS, _tag(name, version), partial(_channels, channels))
 
     threading.Thread(target=make, daemon=True).start()
 
@@ -82,7 +84,7 @@ def _image(name: str, version: int, make: _Maker) -> bpy.types.Image:
     tag = _tag(name, version)
     if (image := _present(tag)) is not None:
         return image
-    channels = MEMO.get(_CHANNELS, tag, lambda: _channels(make))
+    channels = MEMO.get(CHANNELS, tag, lambda: _channels(make))
     side = len(channels[0])
     pixels = np.zeros((side, side, 4), np.float32)
     pixels[..., 3] = 1.0

@@ -7,6 +7,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..core.numerics.memo import MEMO
+from ..nodes.detail_image import CHANNELS
 from ..nodes.extension_check import show_that_it_runs
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.upgrades import upgrade_groups
@@ -143,7 +144,7 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
 
 
 def forget_all() -> None:
-    """Forget all that is known of the file that was open, its seas included."""
+    """Forget all that is known of the file that was open, its seas included, but not the water's patterns."""
     failures.forget_all()
     refinement.forget_all()
     mask_following.forget_all()
@@ -152,7 +153,7 @@ def forget_all() -> None:
     refresh.forget_all()
     forget_cameras()
     portability.forget_all()
-    MEMO.drop()
+    MEMO.drop(but=(CHANNELS,))
     _forget_made()
 
 

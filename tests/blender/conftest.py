@@ -40,11 +40,11 @@ def water_file(tmp_path_factory):
     return tmp_path_factory.mktemp("water") / "water.blend"
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def water_is_built_once(extension, water_file, monkeypatch):
-    """To add the water's 500 nodes takes seconds: a file without shader groups gets the one that is kept.
+    """To add the water's 500 nodes and its images takes seconds: a file without shaders gets those kept.
 
-    For tests of how water looks, not of how its nodes come into a file.
+    That they are what the code builds is tested in test_node_trees.
     """
     material, original = extension("scene.water_material"), extension("nodes.versioned").node_group
     water = extension("nodes.water").WATER

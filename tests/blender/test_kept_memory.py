@@ -8,6 +8,7 @@ import tracemalloc
 from pathlib import Path
 
 import bpy
+import numpy as np
 import pytest
 
 from .test_animation import key
@@ -128,6 +129,14 @@ def test_another_file_keeps_nothing_of_this_one(memo, ocean, empty_scene):
     assert {"surfaces", "waves"} <= memo.report().keys()
     bpy.ops.wm.read_homefile(use_empty=True)
     assert memo.report() == {}
+
+
+def test_the_water_s_patterns_are_computed_once_for_all_files(memo, extension, empty_scene, monkeypatch):
+    images = extension("nodes.detail_image")
+    first = np.array(images.gust_image().pixels)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    monkeypatch.setattr(images, "spline_weights", None)
+    assert np.array_equal(images.gust_image().pixels, first)
 
 
 LONG = "OCEAN_TWEAK_LONG_TESTS" in os.environ

@@ -9,8 +9,6 @@ import pytest
 
 from .sheets import new_sheet
 
-pytestmark = pytest.mark.usefixtures("water_is_built_once")
-
 CELLS, SIDE = 8, 24
 
 

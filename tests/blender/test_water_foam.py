@@ -10,8 +10,6 @@ import bpy
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.usefixtures("water_is_built_once")
-
 SIDE = 100.0  # m
 PIXELS = 160
 BREEZE, GALE = 9.0, 22.0  # m/s: 5 and 9 Beaufort

@@ -245,6 +245,16 @@ def test_one_call_forgets_a_kind_or_all() -> None:
     assert store.report() == {}
 
 
+def test_all_but_a_kind_are_forgotten_those_in_use_elsewhere_too() -> None:
+    store = Memo(100 * KB)
+    values = {kind: store.get(kind, 0, lambda: kilobytes(1)) for kind in ("waves", "foam", "patterns")}
+    held = kilobytes(1)
+    store.watch("seas", held)
+    store.drop(but=("patterns",))
+    assert store.report() == {"patterns": KB}
+    assert store.find("patterns", 0) is values["patterns"]
+
+
 @pytest.mark.parametrize(
     ("text", "size"),
     [("8GB", 8 * 10**9), ("1.5 gb", 1_500_000_000), ("500MB", 5 * 10**8), (" 2000000 B ", 2 * 10**6)],

@@ -16,7 +16,7 @@ import re
 import threading
 import weakref
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Container, Hashable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, ParamSpec, Protocol, TypeVar, cast
 
@@ -169,14 +169,15 @@ class Memo:
         with self._lock:
             self._trim(budget)
 
-    def drop(self, kind: str | None = None) -> None:
-        """Drop all values, or those of one kind."""
+    def drop(self, kind: str | None = None, but: Container[str] = ()) -> None:
+        """Drop all values, or those of one kind, but for some kinds."""
         with self._lock:
-            for each in [kind] if kind is not None else [*self._kept]:
-                self._kept.pop(each, None)
-                self._bytes.pop(each, None)
-            for name in [name for name in self._dropped if kind in (None, name[0])]:
-                del self._dropped[name]
+            for each in {*self._kept, *(name[0] for name in self._dropped)}:
+                if kind in (None, each) and each not in but:
+                    self._kept.pop(each, None)
+                    self._bytes.pop(each, None)
+                    for name in [name for name in self._dropped if name[0] == each]:
+                        del self._dropped[name]
 
     def report(self) -> dict[str, int]:
         """Bytes by kind, the largest first."""
