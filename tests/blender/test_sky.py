@@ -297,10 +297,12 @@ def test_a_panorama_takes_the_skys_place(scene, ocean, hdri):
     before = haze_color(ocean)
     assert bpy.ops.ocean.load_hdri(filepath=str(hdri)) == {"FINISHED"}
     assert is_panorama(scene)
+    assert scene.world.cycles.sampling_method == "AUTOMATIC"
     assert lamps(scene)["Ocean Sun"].data.energy == 0.0
     assert haze_color(ocean) != before
     bpy.ops.ocean.remove_hdri()
     assert not is_panorama(scene)
+    assert scene.world.cycles.sampling_method == "MANUAL"
     assert lamps(scene)["Ocean Sun"].data.energy > 5.0
     assert haze_color(ocean) == pytest.approx(before)
 
