@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..core.numerics.memo import MEMO
 from ..core.numerics.rounding import rounded
-from .surface_detail import foam_lace, gradient, gusts, ripple_slopes, spline_weights
+from .surface_detail import billows, foam_lace, gradient, gusts, normal, ripple_slopes, spline_weights
 
 _KEY = "ocean_tweak_image"
 #: in the memo; the patterns of every file are the same
@@ -31,7 +31,7 @@ _PRECISION = 1.0 / 64.0
 
 def make_ahead() -> None:
     """Compute the patterns of missing images on another thread."""
-    lacking = [each for each in (_RIPPLES, _LACE, _GUSTS) if _present(_tag(*each[:2])) is None]
+    lacking = [each for each in (_RIPPLES, _LACE, _BILLOWS, _GUSTS) if _present(_tag(*each[:2])) is None]
 
     def make() -> None:
         for name, version, channels in lacking:
@@ -50,6 +50,11 @@ def lace_image() -> bpy.types.Image:
     return _image(*_LACE)
 
 
+def billow_image() -> bpy.types.Image:
+    """Billows of foam, normally distributed, in red, and in green and blue their slopes along x and y."""
+    return _image(*_BILLOWS)
+
+
 def gust_image() -> bpy.types.Image:
     """Strength of gusts in red, uniformly distributed over 0…1."""
     return _image(*_GUSTS)
@@ -60,9 +65,15 @@ def _lace() -> Iterable[NDArray[np.float64]]:
     return lace, *gradient(lace)
 
 
+def _billows() -> Iterable[NDArray[np.float64]]:
+    height = billows(_RESOLUTION)
+    return normal(height), *gradient(height)
+
+
 #: images: name, version, and functions for their channels
 _RIPPLES = ("Ocean Tweak Ripples", 1, partial(ripple_slopes, _RESOLUTION))
 _LACE = ("Ocean Tweak Lace", 2, _lace)
+_BILLOWS = ("Ocean Tweak Billows", 1, _billows)
 _GUSTS = ("Ocean Tweak Gusts", 2, lambda: [gusts(_GUST_RESOLUTION)])
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Patterns for what no grid holds: ripples, the lace of foam and gusts, all square and repeating.
+"""Patterns for what no grid holds: ripples, the lace and billows of foam, and gusts.
 
-They are of unit size: a shader gives them their length in metres and their strength.
+All are square, repeat and are of unit size: a shader gives them their length in metres and their strength.
 """
 
 from __future__ import annotations
@@ -24,6 +24,13 @@ _LACE = ((LACE_CELLS, 1.0), (29, 0.3))
 #: logarithm of how much larger than the mean a cell can be, and how many cells far it then reaches
 _SIZES = 0.9
 _REACH = 2
+#: cells of billows along a side, from large to small: a dome is as high as its cell is wide
+BILLOW_CELLS = 6
+_BILLOWS = (BILLOW_CELLS, 13, 29, 65)
+#: logarithm of how much larger than the mean a dome can be
+_DOMES = 0.6
+#: how far domes are from round, as a share of the side
+_ROUND = 0.008
 #: how far the water has carried the walls, as a share of the side, and how uneven the foam lies on them
 _CARRIED, _UNEVEN = 0.035, 0.04
 
@@ -55,7 +62,27 @@ def foam_lace(resolution: int, seed: int = 1) -> Array:
     height = _UNEVEN * _smooth_noise(resolution, seed + 12)
     for number, (cells, weight) in enumerate(_LACE):
         height += weight * _wall_distance(x + moved_x, y + moved_y, cells, seed + number)
-    return _normal_quantile(_evened(height))
+    return normal(height)
+
+
+def billows(resolution: int, seed: int = 3) -> Array:
+    """(N, N) heights, in sides of the pattern, of domes on domes with creases between them, as foam piles up.
+
+    The upper envelope of paraboloids around the points of Worley (1996), on every size of cells.
+    """
+    place = (np.arange(resolution) + 0.5) / resolution
+    x, y = np.meshgrid(place, place)
+    moved_x, moved_y = (_ROUND * _smooth_noise(resolution, seed + number) for number in (39, 40))
+    height = np.zeros((resolution, resolution))
+    for number, cells in enumerate(_BILLOWS):
+        distance, _ = _distances(x + moved_x, y + moved_y, cells, seed + number, _DOMES)
+        height -= distance**2 / cells
+    return height - np.mean(height)
+
+
+def normal(field: Array) -> Array:
+    """The field with its values normally distributed, in the same order."""
+    return _normal_quantile(_evened(field))
 
 
 def gradient(field: Array) -> Array:
@@ -100,12 +127,21 @@ def _wall_distance(x: Array, y: Array, cells: int, seed: int) -> Array:
     A periodic pattern of Worley (1996), in which each cell measures distances by a size of its own: so walls
     are arcs of circles (Apollonius), and cells small and large.
     """
+    nearest, next_nearest = _distances(x, y, cells, seed, _SIZES)
+    return np.asarray(next_nearest - nearest)
+
+
+def _distances(x: Array, y: Array, cells: int, seed: int, uneven: float) -> tuple[Array, Array]:
+    """To the nearest and the next nearest point, in cells, each over its own size.
+
+    uneven : logarithm of how much larger than the mean a size can be
+    """
     column, row = np.floor(x * cells), np.floor(y * cells)
     nearest, next_nearest = (np.full(x.shape, np.inf) for _ in range(2))
     reach = range(-_REACH, _REACH + 1)
     corner = np.arange(float(cells))
     draws = [_uniform(corner, corner[:, np.newaxis], seed, stream) for stream in range(3)]
-    sizes = np.exp(_SIZES * (2.0 * draws[2] - 1.0))
+    sizes = np.exp(uneven * (2.0 * draws[2] - 1.0))
     for shift_y in reach:
         for shift_x in reach:
             of_x, of_y = column + shift_x, row + shift_y
@@ -115,7 +151,7 @@ def _wall_distance(x: Array, y: Array, cells: int, seed: int) -> Array:
             distance = np.hypot(x * cells - point_x, y * cells - point_y) / sizes[corner_y, corner_x]
             next_nearest = np.minimum(next_nearest, np.maximum(nearest, distance))
             nearest = np.minimum(nearest, distance)
-    return np.asarray(next_nearest - nearest)
+    return nearest, next_nearest
 
 
 def _smooth_noise(resolution: int, seed: int) -> Array:

@@ -288,4 +288,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 17, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 18, _build, "ShaderNodeTree")

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Foam on the water: where it covers, how thick it is, and how it shades.
 
-The ocean says which share F of the water is white, and how old that foam is; laces of several sizes say
-where. A lace is normally distributed over the water. Independent laces of the variances v, which add up to 1,
-have a normally distributed sum S, and foam covers where S is below the normal quantile of F: it covers F,
-whatever the variances. Age moves variance from small cells to large ones, and from 7 Beaufort on to cells
-that the wind has drawn out: holes grow. A lace whose cells are below a pixel counts by its variance alone: of
-S, whose seen part is s and whose unseen part has the variance u, a share Φ((Φ⁻¹(F) - s)/√u) of the pixel is
-covered (as Dupuy and Bruneton 2012 do with slopes), so F stays with the distance.
+The ocean says which share F of the water is white, and how old that foam is; laces of several sizes, and
+billows in what is fresh, say where. A lace is normally distributed over the water. Independent laces of the
+variances v, which add up to 1, have a normally distributed sum S, and foam covers where S is below the normal
+quantile of F: it covers F, whatever the variances. Age moves variance from small cells to large ones, and
+from 7 Beaufort on to cells that the wind has drawn out: holes grow. A lace whose cells are below a pixel
+counts by its variance alone: of S, whose seen part is s and whose unseen part has the variance u, a share
+Φ((Φ⁻¹(F) - s)/√u) of the pixel is covered (as Dupuy and Bruneton 2012 do with slopes), so F stays with the
+distance.
 """
 
 from __future__ import annotations
@@ -18,14 +19,17 @@ from typing import NamedTuple
 from .building import Socket
 from .names import BREAKING, FOAM, FOAM_AGE
 from .shading import Shading
-from .water_pattern import WIND_SPEED, Place, lace
+from .water_pattern import WIND_SPEED, Lace, Place, billow, lace
 
 #: laces: length of their cells in Foam Sizes, turn away from the wind in rad, and how much narrower they are
 #: across; four for foam as it was made, and two of threads that the wind has drawn out
 _LACES = ((0.013, 1.1, 1), (0.04, 0.7, 1), (0.12, 0.3, 1), (0.35, -0.4, 1), (1.0, 0.04, 12), (4.0, 0.0, 24))
 #: variances of the laces: of foam that is being made, of some seconds and old; and in a wind that draws it
 #: out, down the crests' fronts while it is young
-_FRESH = (0.08, 0.22, 0.40, 0.30, 0.0, 0.0)
+_FRESH = (0.12, 0.14, 0.08, 0.16, 0.0, 0.0)
+#: variance of the billows of foam that is being made, so that all are 1; length of the largest in Foam Sizes,
+#: turn away from the wind in rad
+_BILLOWS, _BILLOW_SIZE, _BILLOW_TURN = 0.5, 0.07, 0.6
 _YOUNG, _OLD = (0.02, 0.09, 0.36, 0.53, 0.0, 0.0), (0.01, 0.04, 0.18, 0.77, 0.0, 0.0)
 _SPILLED, _DRAWN_OUT = (0.05, 0.12, 0.20, 0.15, 0.32, 0.16), (0.03, 0.09, 0.17, 0.12, 0.32, 0.27)
 #: a vector has three numbers
@@ -37,18 +41,18 @@ _FADING = 2.5  # s, half-life of foam that says nothing of its age
 #: m/s: from 7 Beaufort on old foam begins to lie in streaks, at 9 all of it does (WMO)
 _STREAKS = (13.9, 20.8)
 #: standard deviation of what softens the rims of old foam, which is thin, and of fresh foam
-_SOFT = (0.20, 0.17)
+_SOFT = (0.20, 0.25)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
 _FADE = (0.25, 1.0)
 #: Φ(x) = 1/(1 + exp(-ax - bx³)), wrong by 1.4e-4 at most (Page 1977)
 _PAGE = (1.5976, 0.070566)
 #: optical thickness of foam, a standard deviation of the laces inside its rim: over _GROWTH of age; and fresh
 #: where the crest breaks weakly and strongly, which it does from _STRONG on
-_THICK_OLD, _THICK_FRESH, _STRONG = (2.6, 0.5), (2.4, 9.0), (0.1, 0.7)
+_THICK_OLD, _THICK_FRESH, _STRONG = (2.6, 0.5), (2.4, 8.0), (0.1, 0.7)
 #: what of the thickness is left where the wind draws foam out
 _TORN = 0.8
 #: of the logarithm of the thickness, for a grain of 1; of old and of fresh foam
-_UNEVEN = (-1.0, -0.8)
+_UNEVEN = (-1.0, -1.0)
 #: relative variance of how deep inside their rims the points of a pixel are, where no lace is seen
 _DEEP = 0.57
 #: relative variance of a gamma distribution that lets as much light through as one of the variance 1 whose
@@ -56,14 +60,17 @@ _DEEP = 0.57
 _AS_GAMMA = 0.55
 #: weights of the laces in the grain of foam, whose variance is 1: of fresh foam, and of old as it was made
 #: and drawn out. Some count the other way than in the cover, so that foam is not thickest in its middle
-_FRESH_GRAIN = (0.50, 0.60, -0.52, 0.35, 0.0, 0.0)
+_FRESH_GRAIN, _BILLOW_GRAIN = (0.40, 0.40, -0.34, 0.24, 0.0, 0.0), -0.71
 _GRAIN, _DRAWN_GRAIN = (0.40, 0.55, 0.50, -0.53, 0.0, 0.0), (0.35, 0.5, 0.45, -0.45, -0.35, 0.3)
 #: from a rim inwards, in standard deviations of the laces: how far the slope of foam reaches
 _SLOPING = 0.6
-#: height of foam at its rim in cells, of old and of fresh foam, and of the billows of fresh foam
-_EDGE, _BILLOW = (0.035, 0.05), 0.055
+#: height of foam at its rim in cells, of old and of fresh foam; and what of their slope billows have, as
+#: foam scatters light within, which fills its shades
+_EDGE, _BILLOW = (0.035, 0.04), 0.5
 #: light that creases of fresh foam keep from themselves, and of piles that are too small to be seen
-_CREASED, _SHADOW = 0.21, 0.17
+_CREASED, _SHADOW = 0.5, 0.14
+#: colour of light in the deepest of them: where it has met more foam, it has also met more water
+_IN_SHADE = (0.80, 0.92, 1.0)
 #: from a rim outwards, in standard deviations of the laces: where water is shaded by foam, and how much
 _BESIDE, _SHADED = 0.25, (0.08, 0.4)
 #: of light from behind, what foam of the optical thickness 9 lets through evenly: 1/(1 + ¾(1 - g)τ) with g =
@@ -138,6 +145,7 @@ class _Laid(NamedTuple):
     unseen : variance of the rest
     grain : sum of what is seen by other weights
     grain_unseen : variance of the rest of that
+    billows : what is seen of them
     """
 
     height: Socket
@@ -145,6 +153,7 @@ class _Laid(NamedTuple):
     unseen: Socket
     grain: Socket
     grain_unseen: Socket
+    billows: Lace
 
 
 def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> Cover:
@@ -165,7 +174,7 @@ def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) 
         density=_density(shade, foam, laid, depth),
         light=_light(shade, foam, laid),
         shaded=shade.math("MULTIPLY", _shaded(shade, foam, laid, inwards), has_any),
-        slope=shade.scale(laid.slope, _steepness(shade, given, foam, inwards)),
+        slope=_relief(shade, given, foam, laid, inwards),
         bubbles=shade.math("MULTIPLY", _bubbles(shade, laid, kept, inwards), has_any),
     )
 
@@ -211,7 +220,25 @@ def _laid(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> _L
         grain = shade.math("MULTIPLY_ADD", layer.height, seen, grain)
         grain_unseen = shade.math("MULTIPLY_ADD", weights[number], weights[number], grain_unseen)
         grain_unseen = shade.math("SUBTRACT", grain_unseen, shade.math("MULTIPLY", seen, seen))
-    return _Laid(height, slope, unseen, grain, grain_unseen)
+    shown, hidden = _billows(shade, given, at)
+    # foam covers where the sum is low, on domes first, and is thick where the grain is low
+    variance, heavy = (shade.math("MULTIPLY", foam.youth, each) for each in (_BILLOWS, _BILLOW_GRAIN))
+    weight = shade.math("MULTIPLY", shade.math("SQRT", variance), -1.0)
+    height = shade.math("MULTIPLY_ADD", shown.height, weight, height)
+    unseen = shade.math("MULTIPLY_ADD", variance, hidden, unseen)
+    grain = shade.math("MULTIPLY_ADD", shown.height, heavy, grain)
+    square = shade.math("MULTIPLY", heavy, heavy)
+    grain_unseen = shade.math("MULTIPLY_ADD", square, hidden, grain_unseen)
+    return _Laid(height, slope, unseen, grain, grain_unseen, shown)
+
+
+def _billows(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Lace, Socket]:
+    """What is seen of the billows, and the variance of the rest."""
+    cell = shade.math("MULTIPLY", given["Foam Size"], _BILLOW_SIZE)
+    whole = billow(shade, at, cell, _BILLOW_TURN)
+    kept = shade.smooth(shade.math("DIVIDE", at.footprint, cell), *_FADE, 1.0, 0.0)
+    shown = Lace(shade.math("MULTIPLY", whole.height, kept), shade.scale(whole.slope, kept))
+    return shown, shade.math("SUBTRACT", 1.0, shade.math("MULTIPLY", kept, kept))
 
 
 def _streaks(shade: Shading, given: dict[str, Socket]) -> Socket:
@@ -290,7 +317,7 @@ def _density(shade: Shading, foam: Foam, laid: _Laid, depth: Socket) -> Socket:
 
 def _light(shade: Shading, foam: Foam, laid: _Laid) -> Socket:
     """What is left of the brightness: fresh foam has deep creases between its billows."""
-    creased = shade.smooth(laid.grain, -1.0, 1.4, 0.0, _CREASED)
+    creased = shade.smooth(laid.billows.height, 0.5, -2.4, 0.0, _CREASED)
     lost = shade.mix(laid.unseen, creased, _SHADOW)
     return shade.math("MULTIPLY_ADD", lost, shade.math("MULTIPLY", foam.youth, -1.0), 1.0)
 
@@ -303,26 +330,24 @@ def _shaded(shade: Shading, foam: Foam, laid: _Laid, inwards: Socket) -> Socket:
     return shade.math("MULTIPLY", seen, shade.mix(foam.youth, *_SHADED))
 
 
-def _steepness(shade: Shading, given: dict[str, Socket], foam: Foam, inwards: Socket) -> Socket:
-    """What the slope of foam is of that of its laces.
-
-    Foam falls off towards its rim, where laces rise; fresh foam billows between their walls.
-    """
+def _relief(shade: Shading, given: dict[str, Socket], foam: Foam, laid: _Laid, inwards: Socket) -> Socket:
+    """Slope of foam: it falls off towards its rim, where laces rise, and fresh foam billows within."""
     part = shade.math("DIVIDE", inwards, _SLOPING)
     bell = shade.math("EXPONENT", shade.math("MULTIPLY", shade.math("MULTIPLY", part, part), -1.0))
     edge = shade.math("MULTIPLY", bell, shade.mix(foam.youth, *_EDGE))
-    billow = shade.math(
-        "MULTIPLY", shade.math("MULTIPLY", foam.youth, shade.smooth(inwards, 0.0, _SLOPING)), _BILLOW
-    )
-    return shade.math("MULTIPLY", shade.math("SUBTRACT", billow, edge), given["Foam Relief"])
+    falls = shade.scale(laid.slope, shade.math("MULTIPLY", edge, -1.0))
+    piled = shade.math("MULTIPLY", foam.youth, shade.smooth(inwards, -0.2, _SLOPING, 0.0, _BILLOW))
+    slope = shade.vector("ADD", falls, shade.scale(laid.billows.slope, piled))
+    return shade.scale(slope, given["Foam Relief"])
 
 
 def foam_shader(
     shade: Shading, given: dict[str, Socket], cover: Cover, normal: Socket, behind: Socket
 ) -> Socket:
     """Bubbles scatter all light that meets them, also what comes through a crest from behind."""
-    colour = shade.scale(given["Foam Color"], cover.light)
-    through = shade.scale(shade.vector("MULTIPLY", colour, behind), _THROUGH / math.pi)
+    left = shade.scale(given["Foam Color"], cover.light)
+    through = shade.scale(shade.vector("MULTIPLY", left, behind), _THROUGH / math.pi)
+    colour = shade.vector("MULTIPLY", left, shade.mix_vectors(cover.light, _IN_SHADE, (1.0,) * 3))
     inputs = {
         "Base Color": colour, "Roughness": given["Foam Roughness"],
         "IOR": given["IOR"], "Normal": normal, "Emission Color": through, "Emission Strength": 1.0,

@@ -27,6 +27,8 @@ SURFACE_FACTOR = 0.33
 
 #: bubbles of old foam relative to fresh foam
 _OLD_BUBBLES = 0.55
+#: how many more bubbles there are right under fresh foam, relative to those around it: water is milky there
+_MILK = 5.0
 #: cusps between which a crest is sharp
 _SHARP = (0.12, 0.42)
 #: cusps between which the sun shines through a crest: the rest of it is too thick
@@ -44,6 +46,8 @@ _SCATTERED = 0.35
 def coefficients(shade: Shading, given: dict[str, Socket], foam: Foam, cover: Cover) -> tuple[Socket, Socket]:
     """Absorption and backscatter per metre, with the bubbles under foam and in crests."""
     left = shade.math("MULTIPLY", cover.bubbles, shade.mix(foam.youth, _OLD_BUBBLES, 1.0))
+    dense = shade.math("MULTIPLY", shade.math("POWER", cover.bubbles, 3.0), foam.youth)
+    left = shade.math("MULTIPLY", left, shade.math("MULTIPLY_ADD", dense, _MILK, 1.0))
     bubbles = shade.math("MAXIMUM", left, shade.math("MULTIPLY", sharpness(shade), given["Crest Light"]))
     amount = shade.math("MULTIPLY", bubbles, given["Bubbles"])
     return given["Absorption"], shade.vector(

@@ -14,10 +14,10 @@ from typing import NamedTuple
 import bpy
 
 from .building import Panel, Plug, Socket
-from .detail_image import gust_image, lace_image, ripple_image
+from .detail_image import billow_image, gust_image, lace_image, ripple_image
 from .names import TEXTURE_COORDINATES
 from .shading import Shading
-from .surface_detail import LACE_CELLS
+from .surface_detail import BILLOW_CELLS, LACE_CELLS
 from .versioned import GroupKind, node_group
 
 #: custom properties of an ocean, read by the material; lengths in metres
@@ -169,6 +169,27 @@ def _build_lace(tree: bpy.types.NodeTree) -> None:
     shade.finish({"Height": height, "Slope": shade.scale(slope, narrow)})
 
 
+def billow(shade: Shading, at: Place, cell: Socket, turn: float) -> Lace:
+    """The billows of foam, whose largest are as long as a cell, in m; slope is theirs as they are."""
+    inputs = {**_lies(shade, at, turn), "Cell": cell}
+    made = shade.node("ShaderNodeGroup", inputs, node_tree=node_group(BILLOWS)).outputs
+    return Lace(made["Height"], made["Slope"])
+
+
+def _build_billows(tree: bpy.types.NodeTree) -> None:
+    shade = Shading(tree)
+    inputs = (*_LIES, _number("Cell", "Length of the largest, m"))
+    outputs = (
+        Plug("Height", "NodeSocketFloat", None, "Normally distributed"),
+        Plug("Slope", "NodeSocketVector", None, "Along the ocean's x and y"),
+    )
+    given = shade.interface(outputs, (Panel("Billows", inputs),)).outputs
+    size = shade.math("MULTIPLY", given["Cell"], float(BILLOW_CELLS))
+    laid = _tile(shade, given, billow_image(), size, 0.0)
+    height, along, across = shade.separate(laid.colour)
+    shade.finish({"Height": height, "Slope": _turned(shade, laid.along, along, across)})
+
+
 def gust(shade: Shading, at: Place, size: float) -> Socket:
     """How much of a gust there is, 0…1; the pattern's bumps are an eighth to a third of `size` m.
 
@@ -218,3 +239,4 @@ def _turned(shade: Shading, axis: Socket, along: Socket, across: Socket) -> Sock
 # a tree of nodes is the slower to build the larger it is: what is laid several times is a group
 RIPPLES = GroupKind("Ocean Tweak Ripples", 1, _build_ripples, "ShaderNodeTree")
 LACE = GroupKind("Ocean Tweak Lace", 1, _build_lace, "ShaderNodeTree")
+BILLOWS = GroupKind("Ocean Tweak Billows", 1, _build_billows, "ShaderNodeTree")

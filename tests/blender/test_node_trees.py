@@ -61,6 +61,7 @@ KINDS = {
     "solid-foam": ("nodes.solid_foam", lambda module: module.SOLID_FOAM),
     "ripples": ("nodes.water_pattern", lambda module: module.RIPPLES),
     "lace": ("nodes.water_pattern", lambda module: module.LACE),
+    "billows": ("nodes.water_pattern", lambda module: module.BILLOWS),
     "water": ("nodes.water", lambda module: module.WATER),
     "contact": ("nodes.contact", lambda module: module.CONTACT),
     "wet-band": ("nodes.contact", lambda module: module.WET_BAND),

@@ -8,7 +8,15 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from ocean_tweak.nodes.surface_detail import foam_lace, gradient, gusts, ripple_slopes, spline_weights
+from ocean_tweak.nodes.surface_detail import (
+    billows,
+    foam_lace,
+    gradient,
+    gusts,
+    normal,
+    ripple_slopes,
+    spline_weights,
+)
 
 
 def test_ripples_have_unit_slopes_mostly_along_the_wind():
@@ -39,15 +47,16 @@ def test_a_share_of_the_gusts_lies_below_that_share():
         assert np.mean(values < share) == pytest.approx(share, abs=1e-3)
 
 
-def test_the_lace_is_normally_distributed():
-    values = foam_lace(128)
+@pytest.mark.parametrize("pattern", [foam_lace, lambda resolution: normal(billows(resolution))])
+def test_what_foam_covers_by_is_normally_distributed(pattern):
+    values = pattern(128)
     for share in (0.01, 0.1, 0.5, 0.9):
         assert np.mean(values < QUANTILE(share)) == pytest.approx(share, abs=1e-3)
     assert np.mean(values) == pytest.approx(0.0, abs=1e-3)
     assert np.var(values) == pytest.approx(1.0, rel=1e-2)
 
 
-@pytest.mark.parametrize("pattern", [foam_lace, gusts])
+@pytest.mark.parametrize("pattern", [foam_lace, billows, gusts])
 def test_edges_meet(pattern):
     values = pattern(256)
     for rows in (values, values.T):
@@ -81,6 +90,15 @@ def test_the_gradient_is_that_of_a_wave():
     slope = 2.0 * np.pi * np.cos(2.0 * np.pi * (x + 2.0 * y))
     np.testing.assert_allclose(along, slope, atol=0.02)
     np.testing.assert_allclose(across, 2.0 * slope, atol=0.1)
+
+
+def test_billows_are_domes_with_creases_between():
+    """Creases, few, bend upwards more sharply than domes, nearly everywhere, bend down."""
+    height = billows(512)
+    bent = sum(np.roll(height, step, axis) for axis in (0, 1) for step in (-1, 1)) - 4.0 * height
+    assert np.mean(bent < 0.0) > 0.6
+    assert np.percentile(bent, 99.0) > 1.5 * -np.percentile(bent, 1.0)
+    np.testing.assert_allclose(height.mean(), 0.0, atol=1e-12)
 
 
 def test_cells_of_the_lace_are_small_and_large():
