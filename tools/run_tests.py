@@ -46,6 +46,7 @@ OF_THE_ZIP = (
 OF_EVERY_NUMPY = ("energy", "fields", "foam", "surface", "surface_detail", "surface_query")
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+NOT_FOR_TESTS = ("OCEAN_TWEAK_ZIP", "PYTHONDONTWRITEBYTECODE")
 PYTEST = ("-p", "no:cacheprovider", "-q")
 CLOSING_LINE = re.compile(
     r"^=* ?((?:no tests ran|\d+ [a-z]+(?:, \d+ [a-z]+)*) in [\d.]+s.*?)(?: =+)?$", re.MULTILINE
@@ -204,10 +205,13 @@ def install(blender: real_blender.RealBlender, zip_file: Path, env: Mapping[str,
 
 
 def test_environment(profile_name: str) -> dict[str, str]:
-    """Return the environment of a test run: an empty profile of its own, and no threads beside the tests'."""
+    """Return the environment of a test run: an empty profile of its own, and no threads beside the tests'.
+
+    Modules stay compiled, wherever else they may not: to compile bpy's and ours takes longer than most files.
+    """
     profile = TOOLS / "test-profiles" / profile_name
     shutil.rmtree(profile, ignore_errors=True)
-    own = {name: value for name, value in os.environ.items() if name != "OCEAN_TWEAK_ZIP"}
+    own = {name: value for name, value in os.environ.items() if name not in NOT_FOR_TESTS}
     return {**own, **ONE_THREAD, "BLENDER_USER_RESOURCES": str(profile)}
 
 

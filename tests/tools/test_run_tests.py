@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import subprocess
 import sys
 from collections import Counter
 
@@ -116,3 +117,12 @@ def test_processes_of_a_suite_are_added_up():
     assert lines[1].startswith("FAILED here")
     assert "1 passed in" in lines[1]
     assert lines[2].strip() == "a line"
+
+
+def test_what_python_compiles_is_kept_by_tests(monkeypatch, tmp_path):
+    monkeypatch.setattr(run_tests, "TOOLS", tmp_path)
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    (tmp_path / "module.py").write_text("")
+    command = [sys.executable, "-c", "import module"]
+    subprocess.run(command, cwd=tmp_path, env=run_tests.test_environment("any"), check=True)
+    assert list((tmp_path / "__pycache__").glob("module.*.pyc"))
