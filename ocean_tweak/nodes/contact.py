@@ -39,11 +39,12 @@ _BOW_WIDER, _BOW = 2.0, (0.4, 0.9)
 #: wash: positions along the hull where it begins and is complete, and the growth of its breadth
 _WASH_BEGINS, _WASH_SPREADS = (-0.7, 0.6), 0.14
 
-#: slop: where it begins and hides all, as `wet`, and how uneven its upper edge is; its tongues and shreds
-#: per drip, what its thinnest shreds hide, and its roughness
-_SLOPPY, _UNEVEN_SLOP = (0.55, 0.95), 1.1
+#: slop: where it begins and is thickest, as `wet`; how often per drip, and by how much, its upper edge rises
+_SLOPPY, _LAPS = (0.5, 1.2), ((0.35, 0.9), (1.3, 0.5))
 _BELOW_SLOP = (1.2, 1.6)
-_TONGUES, _SHREDS, _THINNEST_SLOP, _SLOP_ROUGHNESS = 2.0, 7.0, 0.15, 0.7
+#: where its thinnest film is seen, as `wet`; shreds per drip, and how far holes open and how soft they are
+_THIN_SLOP, _SHREDS, _HOLES, _SOFT_SHREDS = (0.5, 0.9), 6.0, 0.5, 0.08
+_SLOP_ROUGHNESS = 0.7
 
 CONTACT_INPUTS = (
     OCEAN_INPUT,
@@ -128,12 +129,17 @@ def _build_wet(tree: bpy.types.NodeTree) -> None:
 
 
 def _slop(shade: Shading, given: dict[str, Socket], at: Socket) -> Socket:
-    """How much of a hull is hidden by what laps at it: tongues of foam at the waterline, torn into shreds."""
-    tongues = shade.noise(at, shade.math("MULTIPLY", given["Drips"], _TONGUES), Detail=3.0)
-    height = shade.math("MULTIPLY_ADD", shade.math("SUBTRACT", tongues, 0.5), _UNEVEN_SLOP, shade.value(WET))
+    """How much of a hull is hidden by what laps at it: a film in places, torn into shreds as it thins."""
+    height = shade.value(WET)
+    for often, amount in _LAPS:
+        lap = shade.noise(at, shade.math("MULTIPLY", given["Drips"], often), Detail=2.0)
+        height = shade.math("MULTIPLY_ADD", shade.math("SUBTRACT", lap, 0.5), amount, height)
     shreds = shade.noise(at, shade.math("MULTIPLY", given["Drips"], _SHREDS), Detail=3.0)
-    torn = shade.smooth(shreds, 0.38, 0.62, _THINNEST_SLOP, 1.0)
-    shown = shade.math("MULTIPLY", shade.smooth(height, *_SLOPPY), torn)
+    thick = shade.smooth(height, *_SLOPPY)
+    # the thinner the film, the more of it is holes
+    holes = shade.math("MULTIPLY_ADD", thick, -_HOLES, 0.5 + 0.5 * _HOLES)
+    torn = shade.smooth(shade.math("SUBTRACT", shreds, holes), -_SOFT_SHREDS, _SOFT_SHREDS)
+    shown = shade.math("MULTIPLY", torn, shade.smooth(height, *_THIN_SLOP))
     # a hull that is cut out may be dry inside, below the water
     shown = shade.math("MULTIPLY", shown, shade.smooth(shade.value(WET), *_BELOW_SLOP, 1.0, 0.0))
     amount = shade.math("MULTIPLY", shade.value(SLOP), given["Slop"], clamp=True)
@@ -253,6 +259,6 @@ def _build_ripple_normal(tree: bpy.types.NodeTree) -> None:
 
 
 CONTACT = GroupKind("Ocean Contact", 2, _build_contact)
-WET_BAND = GroupKind("Ocean Tweak Wet Band", 3, _build_wet, "ShaderNodeTree")
+WET_BAND = GroupKind("Ocean Tweak Wet Band", 4, _build_wet, "ShaderNodeTree")
 COLLAR = GroupKind("Ocean Tweak Collar", 2, _build_collar, "ShaderNodeTree")
 RIPPLE_NORMAL = GroupKind("Ocean Tweak Ripple Normal", 1, _build_ripple_normal, "ShaderNodeTree")
