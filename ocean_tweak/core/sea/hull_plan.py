@@ -32,6 +32,7 @@ _MARGIN, BAND = 3, 6
 _ROUGH_LEVELS, _ROUGH_LONG, _RIM = 48, 96, 0.1
 #: distance in texels from an outline at which it is tested for water on either side
 _PROBE = 1.5
+_STEPS = range(-BAND, BAND + 1)
 
 
 @dataclass(frozen=True)
@@ -212,19 +213,25 @@ def _distances(pieces: _Pieces, inside: Mask, wall: Mask, grid: _Grid) -> Array:
     outwards = (aside * np.where(sides[0], 1.0, -1.0)[:, np.newaxis])[kept]
     level, middle, half = pieces.level[kept], middle[kept], 0.5 * along[kept]
     row, column = grid.texel_of(middle)
-    out, within = np.full(grid.shape, float(BAND)), np.full(grid.shape, float(BAND))
     square = np.sum(half**2, axis=1)
-    for down in range(-BAND, BAND + 1):
-        for right in range(-BAND, BAND + 1):
-            i, j = row + down, column + right
-            known = (i >= 0) & (i < grid.shape[1]) & (j >= 0) & (j < grid.shape[2])
-            centre = grid.low + grid.texel * (np.stack([j, i], axis=-1) + 0.5)
-            off = centre - middle
-            share = np.clip(np.sum(off * half, axis=1) / square, -1.0, 1.0)[:, np.newaxis]
-            distance = np.hypot(*(off - share * half).T) / grid.texel
-            is_out = np.sum(off * outwards, axis=1) > 0.0
-            for field, those in ((out, known & is_out), (within, known & ~is_out)):
-                np.minimum.at(field, (level[those], i[those], j[those]), distance[those])
+    half_x, half_y = np.ascontiguousarray(half.T)
+    out_x, out_y = np.ascontiguousarray(outwards.T)
+    levels, rows, columns = grid.shape
+    # within and out, with a border for texels beyond the grid
+    fields = np.full((2, levels, rows + 2 * BAND, columns + 2 * BAND), float(BAND))
+    flat, (a_side, a_level, a_row, _) = fields.reshape(-1), np.array(fields.strides) // fields.itemsize
+    corner = level * a_level + row * a_row + column
+    centre_x, centre_y = (
+        [grid.low[axis] + grid.texel * (texel + step + 0.5) - middle[:, axis] for step in _STEPS]
+        for axis, texel in ((0, column), (1, row))
+    )
+    for down, off_y in enumerate(centre_y):
+        for right, off_x in enumerate(centre_x):
+            share = np.clip((off_x * half_x + off_y * half_y) / square, -1.0, 1.0)
+            distance = np.hypot(off_x - share * half_x, off_y - share * half_y) / grid.texel
+            is_out = off_x * out_x + off_y * out_y > 0.0
+            np.minimum.at(flat, corner + (down * a_row + right) + is_out * a_side, distance)
+    within, out = fields[:, :, BAND:-BAND, BAND:-BAND]
     # beyond a sharp corner pieces disagree in sign: away from outlines the mask decides, on them the nearer
     # piece, and of two as near the one whose outside it is
     is_outside = np.where(wall, out < within + 1e-6, wet)
