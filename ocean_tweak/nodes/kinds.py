@@ -81,6 +81,7 @@ ALL_KINDS = (
     spray_look.SPRAY_LOOK,
     water_pattern.RIPPLES,
     water_pattern.LACE,
+    water_pattern.BILLOWS,
     water.WATER,
     contact.CONTACT,
     contact.WET_BAND,
