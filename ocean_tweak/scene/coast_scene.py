@@ -14,6 +14,7 @@ from ..core.waves.coast.beds import BEDS, SPACING, grid
 from . import ocean_object, startup_file, water_material
 from .afloat import let_float
 from .beacon import new_beacon
+from .camera_surface import add_camera_surface
 from .ground import add_ground
 from .moods import COASTS, VIEW
 from .refresh import refresh
@@ -57,6 +58,7 @@ def build(
     if wishes.camera or scene.camera is None:
         scene.camera = camera
     kept = set_up(scene, mood, wishes, target, is_empty, view)
+    add_camera_surface(ocean, scene, budget=mood.vertices)
     if wishes.afloat and shore.boat is not None:
         let_float("BOAT", *shore.boat, ocean, scene, target)
     for is_port, place in zip((True, False), shore.beacons, strict=False):

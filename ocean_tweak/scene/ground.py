@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.numerics.interpolation import between, smoothstep
-from ..core.numerics.random import hash_cells, uniform
 from ..core.waves.coast.beds import BEDS, SIDE
 from .ground_material import ROCK, ground_material
+from .relief import rock as rock_relief
 
 Array = NDArray[np.float64]
 
@@ -22,9 +24,11 @@ _OF_STONE = {"HARBOUR", "ISLET"}
 _LEVEL, _STEEPER = 0.955, 0.07
 #: how far rock reaches from where it is steep, m
 _AROUND = 9
-#: length and height of rock's crags, m; and between which heights above the water they begin, m
-_CRAGS = ((21.0, 1.5), (9.0, 1.1), (4.5, 0.7))
-_CRAGS_BEGIN, _CRAGS_WHOLE = 0.1, 2.0
+#: between which heights above the water rock's relief begins, m, and how far all of it stands out
+_BEGINS, _WHOLE, _STANDS = 0.03, 0.8, 1.2
+#: cells of rock that is seen from near, m, and where it is, from and to x and y, m
+_FINE = 0.4
+_SEEN = {"ISLET": ((190.0, 310.0), (182.0, 330.0)), "BEACH": ((225.0, 400.0), (384.0, 508.0))}
 
 
 def add_ground(scene_name: str, bed: str, collection: bpy.types.Collection, scale: float) -> bpy.types.Object:
@@ -34,12 +38,11 @@ def add_ground(scene_name: str, bed: str, collection: bpy.types.Collection, scal
 
     scale : Blender units in a metre
     """
-    along = np.linspace(0.0, SIDE, _CELLS + 1)
-    x, y = np.meshgrid(along, along)
+    x, y = np.meshgrid(*(_along(*fine) for fine in _SEEN.get(bed, ((0.0, 0.0), (0.0, 0.0)))))
     height = BEDS[bed](x, y)
-    rock = np.ones_like(height) if bed in _OF_STONE else _steep(height)
+    rock = np.ones_like(height) if bed in _OF_STONE else _steep(BEDS[bed], x, y)
     if bed != "HARBOUR":  # what is built is even
-        height = height + rock * _crags(x, y, height)
+        height = height + rock * _relief(x, y, height)
     places = np.stack((x, y, height), axis=-1).reshape(-1, 3) * scale
     number = np.arange((_CELLS + 1) ** 2, dtype=np.int32).reshape(_CELLS + 1, _CELLS + 1)
     corners = np.stack((number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]), axis=-1)
@@ -60,13 +63,16 @@ def add_ground(scene_name: str, bed: str, collection: bpy.types.Collection, scal
     return item
 
 
-def _steep(height: Array) -> Array:
+def _steep(bed: Callable[[Array, Array], Array], x: Array, y: Array) -> Array:
     """0…1, rock where ground is steep and around it."""
+    along = np.linspace(0.0, SIDE, _CELLS + 1)
+    height = bed(*np.meshgrid(along, along))
     along_y, along_x = np.gradient(height, SIDE / _CELLS)
     normal = 1.0 / np.sqrt(1.0 + along_x**2 + along_y**2)
     rock = smoothstep((_LEVEL - normal) / _STEEPER) * (height > -1.0)
     wide = np.maximum(rock, _mean(rock, round(_AROUND * _CELLS / SIDE)) * 2.0)
-    return np.minimum(wide, 1.0)
+    place = between(y * (_CELLS / SIDE), x * (_CELLS / SIDE), wide.shape)
+    return np.asarray(place.read(np.minimum(wide, 1.0)))
 
 
 def _mean(field: Array, reach: int) -> Array:
@@ -79,21 +85,17 @@ def _mean(field: Array, reach: int) -> Array:
     return field
 
 
-def _crags(x: Array, y: Array, height: Array) -> Array:
+def _relief(x: Array, y: Array, height: Array) -> Array:
     """m that rock stands out above the bed's formula, or falls short of it: none under water."""
-    total = np.zeros_like(height)
-    for number, (length, size) in enumerate(_CRAGS):
-        total += size * (0.6 - np.abs(2.0 * _lattice(x / length, y / length, number) - 1.0) * 1.4)
+    total = rock_relief(x, y, height) + _STANDS
     # land stays land
-    return smoothstep((height - _CRAGS_BEGIN) / (_CRAGS_WHOLE - _CRAGS_BEGIN)) * np.maximum(
+    return smoothstep((height - _BEGINS) / (_WHOLE - _BEGINS)) * np.maximum(
         total, -0.6 * np.maximum(height, 0.0)
     )
 
 
-def _lattice(x: Array, y: Array, seed: int) -> Array:
-    """0…1, random at integers and smooth in between."""
-    columns = np.arange(int(x.max()) + 2, dtype=np.int64)
-    rows = np.arange(int(y.max()) + 2, dtype=np.int64)
-    values = uniform(hash_cells(columns[np.newaxis], rows[:, np.newaxis], seed), 0)
-    place = between(y, x, values.shape)
-    return np.asarray(place._replace(u=smoothstep(place.u), v=smoothstep(place.v)).read(values))
+def _along(first: float, last: float) -> Array:
+    """m, lines of the mesh from 0 to SIDE: close together from first to last."""
+    within = round((last - first) / _FINE)
+    before = round((_CELLS - within) * first / (SIDE - last + first))
+    return np.interp(np.arange(_CELLS + 1), (0, before, before + within, _CELLS), (0.0, first, last, SIDE))

@@ -23,6 +23,22 @@ def test_ground_is_the_bed_under_water_and_land_stays_land(empty_scene, extensio
     assert (np.abs(height - expected).max() > 1.0) == (bed != "HARBOUR")
 
 
+def test_rock_that_is_seen_has_steps_between_level_places(empty_scene, extension, beds):
+    """The formula of the islet is smooth, and the mesh is finer on rock than elsewhere."""
+    item = extension("scene.ground").add_ground("Ground", "ISLET", empty_scene.collection, 1.0)
+    places = np.empty(3 * len(item.data.vertices), np.float32)
+    item.data.attributes["position"].data.foreach_get("vector", places)
+    side = round(len(item.data.vertices) ** 0.5)
+    x, y, height = places.reshape(side, side, 3).T.astype(np.float64)
+    steps = np.abs(np.diff(height, axis=0)) / np.diff(x, axis=0)
+    of_formula = np.abs(np.diff(beds["ISLET"](x, y), axis=0)) / np.diff(x, axis=0)
+    rock = beds["ISLET"](x, y)[1:] > 2.0
+    assert np.diff(x, axis=0)[rock].max() < 0.5
+    assert (of_formula[rock] > 1.5).mean() < 0.01
+    assert 0.05 < (steps[rock] > 1.5).mean() < 0.4
+    assert (steps[rock] < 0.5).mean() > 0.2
+
+
 def test_sand_is_level_and_rock_is_not(empty_scene, extension):
     """The bay's beach is sand down its whole length, its headlands are rock."""
     item = extension("scene.ground").add_ground("Ground", "BEACH", empty_scene.collection, 1.0)
