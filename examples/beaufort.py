@@ -38,6 +38,7 @@ class Force(NamedTuple):
     spray : its amount; beyond 25 m/s the haze of visibility stands for most of it, which is millions of drops
     seed : of the waves: where a crest breaks before the camera as often as it does in that wind
     overcast : how much of the sky is closed cloud
+    frame : of the still: one in which the boat is not behind a wave
     """
 
     wind_speed: float
@@ -51,6 +52,7 @@ class Force(NamedTuple):
     spray: float = 0.0
     seed: int = 3
     overcast: float = 0.45
+    frame: int = 1
 
 
 FORCES = (
@@ -61,12 +63,12 @@ FORCES = (
     Force(6.7, 48e3, 0.15, 500.0, 1.1),
     Force(9.4, 100e3, 0.2, 800.0, 1.15, spray=1.0),
     Force(12.3, 130e3, 0.25, 1000.0, 1.2, spray=1.0),
-    Force(15.5, 155e3, 0.3, 1200.0, 1.2, 1.7, 5.0, 30e3, 1.0),
-    Force(19.0, 195e3, 0.4, 1600.0, 1.2, 1.4, 5.0, 20e3, 1.0, seed=5),
+    Force(15.5, 155e3, 0.3, 1200.0, 1.2, 1.7, 5.0, 30e3, 1.0, frame=25),
+    Force(19.0, 195e3, 0.4, 1600.0, 1.2, 1.4, 5.0, 20e3, 1.0, seed=5, frame=30),
     Force(22.6, 230e3, 0.5, 2000.0, 1.25, 1.2, 4.5, 9e3, 1.0, seed=1),
     Force(26.5, 280e3, 0.5, 2000.0, 1.25, 2.5, 6.0, 4e3, 0.3),
     Force(30.6, 345e3, 0.5, 2400.0, 1.25, 3.2, 7.0, 1.5e3, 0.15),
-    Force(36.0, 420e3, 0.5, 2800.0, 1.25, 4.5, 8.0, 450.0, 0.05, overcast=0.9),
+    Force(36.0, 420e3, 0.5, 2800.0, 1.25, 3.4, 7.0, 700.0, 0.05, overcast=0.9),
 )
 
 #: waves of the first force that has any stand this far away, m, higher ones in proportion
@@ -87,7 +89,7 @@ def main() -> None:
         scene.render.resolution_y = arguments.width * 9 // 16
         scene.render.use_motion_blur = False
         picture = arguments.out.resolve() / f"force-{number:02d}.png"
-        render(scene, arguments.frame, picture)
+        render(scene, arguments.frame or FORCES[number].frame, picture)
         if arguments.jpeg:
             save_jpeg(picture, arguments.jpeg.resolve() / f"{picture.stem}.jpg", arguments.bytes)
 
@@ -95,9 +97,9 @@ def main() -> None:
 def parse(argv: list[str]) -> argparse.Namespace:
     """The arguments after "--"."""
     parser = picture_parser("beaufort.py")
-    parser.set_defaults(width=640, samples=8)
+    parser.set_defaults(width=800, samples=10, frame=0)
     parser.add_argument("--forces", nargs="+", type=int, default=range(13), choices=range(13))
-    parser.add_argument("--bytes", type=int, default=60_000, help="of a JPEG file, at most")
+    parser.add_argument("--bytes", type=int, default=90_000, help="of a JPEG file, at most")
     return parser.parse_args(argv)
 
 
