@@ -16,6 +16,7 @@ from .afloat import let_float
 from .beacon import new_beacon
 from .camera_surface import add_camera_surface
 from .ground import add_ground
+from .hinterland import add_hinterland
 from .moods import COASTS, VIEW
 from .refresh import refresh
 from .settings import VIEWPORT_RESOLUTION, settings_of
@@ -45,6 +46,8 @@ def build(
     startup_file.remove(left)
     ground = add_ground(f"{mood.label} Ground", shore.bed, target, 1.0 / metres)
     settings_of(ocean).coast.bed = ground
+    if shore.bed == "HARBOUR":
+        add_hinterland(f"{mood.label} Hinterland", target, 1.0 / metres)
     way = Vector(shore.target) - Vector(shore.eye)
     view = math.atan2(way.y, way.x)
     material = water_material.water_material(mood.water)

@@ -136,11 +136,30 @@ MOODS = {
     ),
 }  # fmt: skip
 
-#: in rows of three along the harbour's quay
+#: unevenly along the harbour's quay
 _SHEDS = tuple(
-    (474.0 + shift, first + y, 2.4)
-    for first, shift in ((52.0, 0.0), (122.0, 2.0), (210.0, -1.0), (290.0, 1.5), (372.0, 0.0))
-    for y in (0.0, 14.0, 30.0)
+    (474.0 + shift, y, 2.4)
+    for y, shift in (
+        (40.0, 0.0),
+        (56.0, 6.0),
+        (71.0, 3.0),
+        (108.0, 9.0),
+        (126.0, -2.0),
+        (168.0, 2.0),
+        (182.0, 7.0),
+        (205.0, -1.0),
+        (219.0, 1.0),
+        (240.0, 8.0),
+        (281.0, 1.5),
+        (294.0, 4.0),
+        (309.0, -3.0),
+        (348.0, 0.0),
+        (383.0, 5.0),
+        (398.0, 0.0),
+        (414.0, 2.0),
+        (452.0, 6.0),
+        (470.0, 1.0),
+    )
 )
 
 #: seas with a coast
@@ -156,9 +175,9 @@ COASTS = {
         "Harbour", "Waves that pass the gap between two moles and spread in a fan behind it",
         waves=partial(_coast, 12.0, 120e3, 0.0, 14.0, Foam()), water="COASTAL",
         sky=seen(14.0, -35.0, clouds=0.5, exposure=-0.25),
-        eye=0.0, crest_distance=0.0, lens=50.0, tilt=0.0, rings=0, floats="",
+        eye=0.0, crest_distance=0.0, lens=42.0, tilt=0.0, rings=0, floats="",
         shore=Shore(
-            "HARBOUR", (10.0, 190.0, 60.0), (262.0, 262.0, 4.0),
+            "HARBOUR", (10.0, 190.0, 48.0), (262.0, 254.0, 16.0),
             boat=(182.0, 259.0, _degrees(-6.0)), beacons=((210.0, 298.0, 2.5), (210.0, 214.0, 2.5)),
             sheds=_SHEDS,
         ),

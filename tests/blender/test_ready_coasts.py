@@ -39,6 +39,20 @@ def test_rock_that_is_seen_has_steps_between_level_places(empty_scene, extension
     assert (steps[rock] < 0.5).mean() > 0.2
 
 
+def test_land_goes_on_behind_the_harbour_and_waves_do_not_see_it(empty_scene, extension, beds):
+    item = extension("scene.hinterland").add_hinterland("Land", empty_scene.collection, 0.5)
+    places = np.empty(3 * len(item.data.vertices), np.float32)
+    item.data.attributes["position"].data.foreach_get("vector", places)
+    x, y, height = places.reshape(-1, 3).T.astype(np.float64) / 0.5
+    over_bed = (x < 512.0) & (y > 0.0) & (y < 512.0)
+    assert (height[over_bed] < beds["HARBOUR"](x, y)[over_bed]).all()
+    assert (height[(x > 460.0) & ~over_bed] > 2.0).all()
+    assert y.min() < -2000.0
+    assert y.max() > 2000.0
+    assert 40.0 < height[x > 2000.0].max() < 200.0
+    assert item.data.polygons[0].normal.z > 0.0
+
+
 def test_sand_is_level_and_rock_is_not(empty_scene, extension):
     """The bay's beach is sand down its whole length, its headlands are rock."""
     item = extension("scene.ground").add_ground("Ground", "BEACH", empty_scene.collection, 1.0)
