@@ -39,8 +39,9 @@ _GUSTS = ((1400.0, 0.6), (310.0, 0.4))
 _GUSTY = (0.15, 1.85)
 #: smallest roughness of water, so that reflections of the sun are not points
 _SMOOTHEST = 0.03
-#: heights of what a ripple mirrors, as sines, between which it is water and sky
-_BELOW = (-0.1, 0.0)
+#: heights of what a ripple mirrors, as sines, between which it is water and sky; and the share of F0 that
+#: stands for two ripples: of grazing light it leaves two thirds
+_BELOW, _TWICE = (-0.1, 0.0), 0.4
 #: what waves that the mesh leaves out add to alpha², of their slope variance σ². Far water is as bright as
 #: its slopes along the line of sight are steep in the mean: GGX has E|s| = alpha, and with Gaussian slopes of
 #: the variance σ²/2 besides alpha + σ²/4alpha, so alpha² grows by σ²/2 (without other roughness by σ²/π)
@@ -158,14 +159,14 @@ def _build(tree: bpy.types.NodeTree) -> None:
     cover = foam_cover(shade, given, at, foam)
     absorption, backscatter = coefficients(shade, given, foam, cover)
     through = given["Transmission"]
-    normal = _normal(shade, given, slope)
+    normal, mirrored = _mirroring(shade, _normal(shade, given, slope))
     below = body(shade, given, absorption, backscatter)
     lit = shade.math("SUBTRACT", 1.0, cover.shaded)
     behind = light_through_crests(shade, given, absorption)
     inputs = {
         "Base Color": shade.mix_vectors(through, shade.scale(below, lit), (1.0,) * 3),
         "Transmission Weight": through, "Roughness": roughness, "IOR": given["IOR"], "Normal": normal,
-        "Specular IOR Level": shade.math("MULTIPLY", _mirrored(shade, normal), lit),
+        "Specular IOR Level": shade.math("MULTIPLY", mirrored, lit),
         "Emission Color": crest_glow(shade, given, behind, normal), "Emission Strength": 1.0,
     }  # fmt: skip
     water = shade.node("ShaderNodeBsdfPrincipled", inputs, distribution="GGX").outputs[0]
@@ -176,14 +177,17 @@ def _build(tree: bpy.types.NodeTree) -> None:
     shade.finish({"Surface": hazy, "Volume": _volume(shade, given, at), "Foam": cover.amount})
 
 
-def _mirrored(shade: Shading, normal: Socket) -> Socket:
-    """How much of the mirrored light is the sky's, as the shader takes it: 0.5 for all.
+def _mirroring(shade: Shading, normal: Socket) -> tuple[Socket, Socket]:
+    """The normal as it mirrors light, and how much, as the shader takes it: 0.5 for all.
 
-    What a ripple mirrors from below the horizon is the next ripple, which EEVEE cannot see.
+    What a ripple mirrors from below the horizon is the next ripple, which EEVEE cannot see, and that mirrors
+    the sky as high above the horizon, but for what it lets in.
     """
     incoming = shade.node("ShaderNodeNewGeometry").outputs["Incoming"]
-    mirrored = shade.vector("REFLECT", shade.scale(incoming, -1.0), normal)
-    return shade.smooth(shade.separate(mirrored)[2], *_BELOW, 0.0, 0.5)
+    x, y, z = shade.separate(shade.vector("REFLECT", shade.scale(incoming, -1.0), normal))
+    mirrored = shade.combine(x, y, shade.math("ABSOLUTE", z))
+    halfway = shade.vector("NORMALIZE", shade.vector("ADD", incoming, mirrored))
+    return halfway, shade.smooth(z, *_BELOW, 0.5 * _TWICE, 0.5)
 
 
 def _waves(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Socket, Socket]:
@@ -288,4 +292,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 18, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 19, _build, "ShaderNodeTree")

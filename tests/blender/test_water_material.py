@@ -169,6 +169,17 @@ def test_haze_hides_far_water(inputs, seen):
     np.testing.assert_allclose(seen(), 0.98 * np.array([0.5, 0.25, 0.0]) + 0.02 * bare, atol=2e-3)
 
 
+@pytest.mark.parametrize("tilt", [0.0, 2.0, 15.0])
+def test_a_ripple_that_mirrors_the_next_one_shows_the_sky_by_way_of_it(inputs, seen, tilt):
+    """Seen from 10° above the horizon, one that leans away by 15° mirrors what is 20° below it: water, which
+    mirrors the sky 20° above. The light turns by 30°, as at an angle of incidence of 75°; less of it is left.
+    """
+    inputs["Normal Map"].default_value = 0.0, math.sin(math.radians(tilt)), math.cos(math.radians(tilt))
+    incidence, share = (80.0 + tilt, 1.0) if tilt < 5.0 else (75.0, 0.4)
+    root = math.sqrt(share * fresnel(0.0))
+    assert seen(80.0)[0] == pytest.approx(fresnel(incidence, (1.0 + root) / (1.0 - root)), rel=0.06)
+
+
 def test_a_normal_image_turns_the_surface(inputs, sea, seen):
     """Tilted away by 15°, water seen at 45° reflects as at 60°."""
     tilted = bpy.data.images.new("Normals", 4, 4, float_buffer=True, is_data=True)
