@@ -66,7 +66,9 @@ SHOTS = {
     "calm": Shot("CALM"),
     "fresh-breeze": Shot(
         "FRESH_BREEZE", (10.5, 120e3), foam=3.0,
-        changes={"rings": 0, "eye": 4.2, "crest_distance": 13.0, "vertices": 600_000},
+        changes={
+            "rings": 0, "eye": 4.2, "crest_distance": 13.0, "vertices": 600_000, "tilt": math.radians(4.0),
+        },
     ),
     "storm": Shot("STORM"),
     "backlit-crest": Shot(
