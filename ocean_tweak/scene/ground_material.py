@@ -14,7 +14,7 @@ from ..nodes.shading import Shading, Socket
 ROCK = "rock"
 
 _NAME = "Ocean Tweak Ground"
-_SAND, _DARK_SAND, _WET_SAND = (0.47, 0.375, 0.26), (0.33, 0.25, 0.165), (0.085, 0.062, 0.042)
+_SAND, _DARK_SAND, _WET_SAND = (0.47, 0.375, 0.26), (0.33, 0.25, 0.165), (0.12, 0.09, 0.062)
 _WRACK = (0.045, 0.036, 0.022)
 _ROCKS = ((0.055, 0.05, 0.046), (0.17, 0.145, 0.12), (0.105, 0.088, 0.07), (0.235, 0.205, 0.17))
 #: how much of the difference between beds of rock the weather takes
@@ -106,7 +106,7 @@ def _sand(shade: Shading, place: _Place) -> tuple[Socket, Socket, Socket]:
         "MULTIPLY_ADD", place.middle, 0.25, shade.math("MULTIPLY_ADD", place.fine, 0.06, ripples)
     )
     relief = shade.math("MULTIPLY", banks, shade.mix(place.wet, 1.0, 0.03))
-    return colour, shade.mix(place.wet, 0.9, 0.05), relief
+    return colour, shade.mix(place.wet, 0.9, 0.16), relief
 
 
 def _stone(shade: Shading, place: _Place) -> tuple[Socket, Socket, Socket]:
