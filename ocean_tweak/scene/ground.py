@@ -43,12 +43,23 @@ def add_ground(scene_name: str, bed: str, collection: bpy.types.Collection, scal
     rock = np.ones_like(height) if bed in _OF_STONE else _steep(BEDS[bed], x, y)
     if bed != "HARBOUR":  # what is built is even
         height = height + rock * _relief(x, y, height)
-    places = np.stack((x, y, height), axis=-1).reshape(-1, 3) * scale
-    number = np.arange((_CELLS + 1) ** 2, dtype=np.int32).reshape(_CELLS + 1, _CELLS + 1)
+    return land(scene_name, np.stack((x, y, height), axis=-1), rock, collection, scale)
+
+
+def land(
+    name: str, places: Array, rock: Array, collection: bpy.types.Collection, scale: float
+) -> bpy.types.Object:
+    """A mesh of quads with the ground's material.
+
+    places : (rows, columns, 3) x, y and height, m; x grows along columns and y along rows
+    rock : (rows, columns) 0…1, what of it is rock
+    scale : Blender units in a metre
+    """
+    number = np.arange(rock.size, dtype=np.int32).reshape(rock.shape)
     corners = np.stack((number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]), axis=-1)
-    mesh = bpy.data.meshes.new(scene_name)
-    mesh.vertices.add(len(places))
-    mesh.vertices.foreach_set("co", places.astype(np.float32).reshape(-1))
+    mesh = bpy.data.meshes.new(name)
+    mesh.vertices.add(rock.size)
+    mesh.vertices.foreach_set("co", (places * scale).astype(np.float32).reshape(-1))
     mesh.loops.add(corners.size)
     mesh.loops.foreach_set("vertex_index", corners.reshape(-1))
     mesh.polygons.add(corners.size // 4)
@@ -57,7 +68,7 @@ def add_ground(scene_name: str, bed: str, collection: bpy.types.Collection, scal
     mesh.shade_smooth()
     attribute = mesh.attributes.new(ROCK, "FLOAT", "POINT")
     attribute.data.foreach_set("value", rock.astype(np.float32).reshape(-1))
-    item = bpy.data.objects.new(scene_name, mesh)
+    item = bpy.data.objects.new(name, mesh)
     mesh.materials.append(ground_material(scale))
     collection.objects.link(item)
     return item

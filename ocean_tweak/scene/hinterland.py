@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..core.numerics.interpolation import smoothstep
 from ..core.waves.coast.beds import SIDE
-from .ground_material import ROCK, ground_material
+from .ground import land
 from .relief import noise
 
 Array = NDArray[np.float64]
@@ -32,20 +32,10 @@ def add_hinterland(name: str, collection: bpy.types.Collection, scale: float) ->
     x = _EDGE + (_FAR * np.linspace(0.0, 1.0, _LINES[0]) ** 2.2)
     side = np.linspace(-1.0, 1.0, _LINES[1])
     y = 0.5 * SIDE + 0.8 * SIDE * side + (_FAR - 0.3 * SIDE) * side**3
-    across, along = np.meshgrid(y, x)
+    along, across = np.meshgrid(x, y)
     height = hinterland(along, across)
-    number = np.arange(height.size).reshape(height.shape)
-    corners = np.stack((number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]), axis=-1)
-    mesh = bpy.data.meshes.new(name)
-    places = np.stack((along, across, height), axis=-1).reshape(-1, 3) * scale
-    mesh.from_pydata(places.tolist(), [], corners.reshape(-1, 4).tolist())
-    mesh.shade_smooth()
-    mesh.materials.append(ground_material(scale))
-    rock = mesh.attributes.new(ROCK, "FLOAT", "POINT")
-    rock.data.foreach_set("value", np.ones(height.size, np.float32))
-    item = bpy.data.objects.new(name, mesh)
-    collection.objects.link(item)
-    return item
+    places = np.stack((along, across, height), axis=-1)
+    return land(name, places, np.ones_like(height), collection, scale)
 
 
 def hinterland(x: Array, y: Array) -> Array:
