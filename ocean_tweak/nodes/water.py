@@ -181,13 +181,15 @@ def _mirroring(shade: Shading, normal: Socket) -> tuple[Socket, Socket]:
     """The normal as it mirrors light, and how much, as the shader takes it: 0.5 for all.
 
     What a ripple mirrors from below the horizon is the next ripple, which EEVEE cannot see, and that mirrors
-    the sky as high above the horizon, but for what it lets in.
+    the sky as high above the horizon, but for what it lets in. Seen from below it is the same upside down.
     """
     incoming = shade.node("ShaderNodeNewGeometry").outputs["Incoming"]
+    side = shade.math("SIGN", shade.separate(incoming)[2])
     x, y, z = shade.separate(shade.vector("REFLECT", shade.scale(incoming, -1.0), normal))
-    mirrored = shade.combine(x, y, shade.math("ABSOLUTE", z))
+    away = shade.math("MULTIPLY", z, side)
+    mirrored = shade.combine(x, y, shade.math("MULTIPLY", shade.math("ABSOLUTE", z), side))
     halfway = shade.vector("NORMALIZE", shade.vector("ADD", incoming, mirrored))
-    return halfway, shade.smooth(z, *_BELOW, 0.5 * _TWICE, 0.5)
+    return halfway, shade.smooth(away, *_BELOW, 0.5 * _TWICE, 0.5)
 
 
 def _waves(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Socket, Socket]:
@@ -292,4 +294,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 19, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 20, _build, "ShaderNodeTree")

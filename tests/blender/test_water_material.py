@@ -180,6 +180,25 @@ def test_a_ripple_that_mirrors_the_next_one_shows_the_sky_by_way_of_it(inputs, s
     assert seen(80.0)[0] == pytest.approx(fresnel(incidence, (1.0 + root) / (1.0 - root)), rel=0.06)
 
 
+@pytest.mark.parametrize(("angle", "shown"), [(30.0, True), (70.0, False)])
+def test_from_below_the_sky_is_seen_through_a_round_window(inputs, sea, seen, empty_scene, angle, shown):
+    """Snell's: up to 48.6° from the normal for water of 1.333; beyond it the surface mirrors the deep."""
+    sea.rotation_euler.x = tilt = math.radians(-10.0)
+    world = empty_scene.world.node_tree
+    direction = world.nodes.new("ShaderNodeTexCoord").outputs["Generated"]
+    up = world.nodes.new("ShaderNodeSeparateXYZ")
+    is_up = world.nodes.new("ShaderNodeMath")
+    is_up.operation, is_up.inputs[1].default_value = "GREATER_THAN", 0.0
+    background = next(node for node in world.nodes if node.type == "BACKGROUND")
+    world.links.new(direction, up.inputs[0])
+    world.links.new(up.outputs["Z"], is_up.inputs[0])
+    world.links.new(is_up.outputs[0], background.inputs["Strength"])
+    inputs["Transmission"].default_value = 1.0
+    within = math.radians(angle) + tilt
+    light = 1.0 - fresnel(math.degrees(math.asin(1.333 * math.sin(within)))) if shown else 0.0
+    assert seen(180.0 - angle)[0] == pytest.approx(light, abs=0.06)
+
+
 def test_a_normal_image_turns_the_surface(inputs, sea, seen):
     """Tilted away by 15°, water seen at 45° reflects as at 60°."""
     tilted = bpy.data.images.new("Normals", 4, 4, float_buffer=True, is_data=True)
